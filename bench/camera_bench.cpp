@@ -39,8 +39,8 @@ MemoryTrajectory riding(int frames) {
   return film;
 }
 
-CameraOptions camera_with(const std::string& what) {
-  CameraOptions o;
+imaging::CameraOptions camera_with(const std::string& what) {
+  imaging::CameraOptions o;
   if (what == "motion") o.exposure = 0.05;
   if (what == "lens") o.distortion = -0.03, o.rotation_deg = 2;
   if (what == "glare") o.glare = 0.6;
@@ -49,8 +49,8 @@ CameraOptions camera_with(const std::string& what) {
 
 void expose(benchmark::State& state, const char* what) {
   const MemoryTrajectory film = riding(3);
-  const SyntheticCamera camera(camera_with(what), film.info());
-  const Exposure exposure{&film.frames()[0], &film.frames()[1], &film.frames()[2]};
+  const imaging::SyntheticCamera camera(camera_with(what), film.info());
+  const imaging::Exposure exposure{&film.frames()[0], &film.frames()[1], &film.frames()[2]};
   for (auto _ : state) benchmark::DoNotOptimize(camera.expose(exposure));
   state.SetItemsProcessed(state.iterations());
 }
@@ -64,9 +64,10 @@ void render_frames(benchmark::State& state, const char* what) {
   const MemoryTrajectory film = riding(kFrames);
   const auto folder = std::filesystem::temp_directory_path() / "twincell-camera-bench";
   for (auto _ : state)
-    render(film, camera_with(what),
-           RenderJob{.folder = folder,
-                     .threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))});
+    imaging::render(
+        film, camera_with(what),
+        imaging::RenderJob{.folder = folder,
+                           .threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))});
   std::filesystem::remove_all(folder);
   state.counters["frames"] =
       benchmark::Counter(kFrames * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);

@@ -42,10 +42,10 @@ int main(int argc, char** argv) {
   // Detections.
   const std::string path = argv[1];
   std::ifstream in(path, std::ios::binary);
-  std::vector<std::vector<PixelPoint>> frames(static_cast<std::size_t>(get<std::int64_t>(in)));
+  std::vector<std::vector<imaging::PixelPoint>> frames(static_cast<std::size_t>(get<std::int64_t>(in)));
   for (auto& frame : frames) {
     frame.resize(static_cast<std::size_t>(get<std::int64_t>(in)));
-    for (PixelPoint& p : frame) {
+    for (imaging::PixelPoint& p : frame) {
       p.x_px = get<double>(in);
       p.y_px = get<double>(in);
     }
@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
     return 3;
   }
   // Options of the linker.
-  LinkOptions options{.diameter_px = std::stod(argv[2])};
+  imaging::LinkOptions options{.diameter_px = std::stod(argv[2])};
   const int phases = std::stoi(argv[3]);
   options.closed = true;
   if (argc > 4) options.fall_px = std::stod(argv[4]);
@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
   const int repetitions = argc > 6 ? std::stoi(argv[6]) : 1;
 
   auto time_of = [&](std::size_t f) {
-    FrameTime time;
+    imaging::FrameTime time;
     if (phases > 0) {
       time.phase = static_cast<std::int32_t>(f % static_cast<std::size_t>(phases));
       time.cycle = static_cast<std::int64_t>(f / static_cast<std::size_t>(phases));
@@ -72,19 +72,20 @@ int main(int argc, char** argv) {
   };
   // Linking: the fastest repetition counts; the first one also writes the identities.
   double best = 1e300;
-  LinkReport report;
+  imaging::LinkReport report;
   for (int r = 0; r < repetitions; ++r) {
     std::ofstream out;
     if (r == 0) out.open(path + ".ids", std::ios::binary);
-    Linker linker(options, phases);
+    imaging::Linker linker(options, phases);
     const double begun = cpu_seconds();
-    linker.begin(initial_velocities(options, phases, frames.size(), [&](std::size_t f) {
-      return FrameOfBeads{frames[f], {}, time_of(f)};
+    linker.begin(imaging::initial_velocities(options, phases, frames.size(), [&](std::size_t f) {
+      return imaging::FrameOfBeads{frames[f], {}, time_of(f)};
     }));
     double seconds = cpu_seconds() - begun;
     for (std::size_t f = 0; f < frames.size(); ++f) {
       const bool more = f + 1 < frames.size();
-      const FrameAhead ahead = more ? FrameAhead{frames[f + 1], time_of(f + 1), {}} : FrameAhead{};
+      const imaging::FrameAhead ahead =
+          more ? imaging::FrameAhead{frames[f + 1], time_of(f + 1), {}} : imaging::FrameAhead{};
       const double start = cpu_seconds();
       const std::vector<std::int64_t> ids = linker.next(frames[f], time_of(f), {}, more ? &ahead : nullptr);
       seconds += cpu_seconds() - start;

@@ -75,7 +75,7 @@ nlohmann::json finite(double value) {
 }
 
 std::string data_hash(const std::string& stack) {
-  return "sha256:" + sha256_of(file_of_stack(stack));
+  return "sha256:" + sha256_of(imaging::file_of_stack(stack));
 }
 
 void add_output_flags(CLI::App& verb, Common& common, CalibrateFlags& flags) {
@@ -101,11 +101,11 @@ void add_stack_flags(CLI::App& verb, Common& common, CalibrateFlags& flags) {
   add_output_flags(verb, common, flags);
 }
 
-CellDescription cell_of(const CalibrateFlags& flags) {
-  return flags.cell_file.empty() ? CellDescription{} : read_cell(flags.cell_file);
+imaging::CellDescription cell_of(const CalibrateFlags& flags) {
+  return flags.cell_file.empty() ? imaging::CellDescription{} : imaging::read_cell(flags.cell_file);
 }
 
-calibration::CellGeometry geometry_of(const CalibrateFlags& flags, const CellDescription& cell,
+calibration::CellGeometry geometry_of(const CalibrateFlags& flags, const imaging::CellDescription& cell,
                                       const Common& common, calibration::StackEdges& edges) {
   const bool bright = flags.bright || cell.bright;
   const double diameter = calibration::diameter_for_edges(
@@ -122,14 +122,15 @@ calibration::CellGeometry geometry_of(const CalibrateFlags& flags, const CellDes
   }
 }
 
-std::optional<Measurement> calibrated(const CellDescription& cell, const std::string& name) {
+std::optional<Measurement> calibrated(const imaging::CellDescription& cell, const std::string& name) {
   const auto& taken = cell.included.taken;
   if (std::find(taken.begin(), taken.end(), name) == taken.end()) return std::nullopt;
   const Calibration file = read_calibration(cell.included.file);
   return *file.find(name);
 }
 
-std::optional<KnownNumber> scale_of(const CellDescription& cell, const calibration::CellGeometry& geometry) {
+std::optional<KnownNumber> scale_of(const imaging::CellDescription& cell,
+                                    const calibration::CellGeometry& geometry) {
   if (cell.pixels_per_sigma) {
     KnownNumber scale{.value = *cell.pixels_per_sigma, .error = std::nullopt, .from = "the cell's scale"};
     if (const auto m = calibrated(cell, "camera.pixels_per_sigma"); m && std::isfinite(m->standard_error[0]))

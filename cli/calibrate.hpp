@@ -31,11 +31,11 @@ void add_stack_flags(CLI::App& verb, Common& common, CalibrateFlags& flags);
 void add_output_flags(CLI::App& verb, Common& common, CalibrateFlags& flags);
 
 /// The cell description of --cell, or an empty one without --cell.
-CellDescription cell_of(const CalibrateFlags& flags);
+imaging::CellDescription cell_of(const CalibrateFlags& flags);
 
 /// The geometry of the cell, fitted to the edges in the stack. \param edges output: the edges, and the bead
 /// diameter with which they were read
-calibration::CellGeometry geometry_of(const CalibrateFlags& flags, const CellDescription& cell,
+calibration::CellGeometry geometry_of(const CalibrateFlags& flags, const imaging::CellDescription& cell,
                                       const Common& common, calibration::StackEdges& edges);
 
 /// Method of a scale that was derived from the known width of the cell.
@@ -49,10 +49,11 @@ struct KnownNumber {
 };
 /// Pixels per sigma: from the cell description, otherwise the distance of the walls over cell.width. Absent
 /// if neither is known.
-std::optional<KnownNumber> scale_of(const CellDescription& cell, const calibration::CellGeometry& geometry);
+std::optional<KnownNumber> scale_of(const imaging::CellDescription& cell,
+                                    const calibration::CellGeometry& geometry);
 /// The measurement of that name in the calibration file of the cell. Absent if the cell does not take the
 /// quantity from there.
-std::optional<Measurement> calibrated(const CellDescription& cell, const std::string& name);
+std::optional<Measurement> calibrated(const imaging::CellDescription& cell, const std::string& name);
 
 /// The result of a calibration, ready for output.
 struct CalibrationResult {

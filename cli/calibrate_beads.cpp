@@ -23,7 +23,7 @@ struct BeadOptions {
 };
 
 void run(const BeadOptions& o, const Common& common) {
-  const CellDescription cell = cell_of(o.flags);
+  const imaging::CellDescription cell = cell_of(o.flags);
   CalibrationResult out;
   calibration::SizeStatistics c;
   double unit_px = 1;  // px in the unit of length of `c`
@@ -36,16 +36,16 @@ void run(const BeadOptions& o, const Common& common) {
     unit_px = info.scale.pixels_per_sigma.value_or(std::nan(""));
     if (info.box.boundary[0] != Boundary::open) width = info.box.size().x();
   } else {
-    LocatorOptions locator;
+    imaging::LocatorOptions locator;
     locator.preprocess.bright = o.flags.bright || cell.bright;
     locator.diameter_px = o.flags.diameter_px > 0 ? o.flags.diameter_px : cell.pixels_per_sigma.value_or(0);
     const auto frames = open_stack(o.flags.stack, common);
     cv::Mat first;
-    std::optional<Lens> lens;
+    std::optional<imaging::Lens> lens;
     if (cell.rotation_deg != 0 || cell.distortion != 0) {
-      if (!open_frames(o.flags.stack)->next(first))
+      if (!imaging::open_frames(o.flags.stack)->next(first))
         throw InputError({.file = o.flags.stack, .key = {}}, "contains no frame.");
-      lens = Lens(first.size(), cell.rotation_deg, cell.distortion);
+      lens = imaging::Lens(first.size(), cell.rotation_deg, cell.distortion);
     }
     ProgressBar bar(common, "beads");
     c = calibration::count_beads(

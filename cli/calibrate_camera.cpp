@@ -44,13 +44,13 @@ calibration::Estimate mean_row(const calibration::CellGeometry& g) {
 
 void add_target(const CameraCalibration& o, nlohmann::json& d, std::string& text) {
   cv::Mat picture;
-  if (!open_frames(o.target)->next(picture))
+  if (!imaging::open_frames(o.target)->next(picture))
     throw InputError({.file = o.target, .key = {}}, "contains no picture.");
   if (o.grid.size() != 2)
     throw ConfigError({.file = {}, .key = "--target-grid"},
                       "is missing; give the numbers of points along x and y, for example 9 6.");
-  const TargetPattern pattern{.kind = o.kind, .columns = o.grid[0], .rows = o.grid[1]};
-  const auto points = find_target(picture, pattern);
+  const imaging::TargetPattern pattern{.kind = o.kind, .columns = o.grid[0], .rows = o.grid[1]};
+  const auto points = imaging::find_target(picture, pattern);
   if (points.empty())
     throw InputError({.file = o.target, .key = {}}, fmt::format("shows no complete {} of {} x {} points.",
                                                                 o.kind, pattern.columns, pattern.rows));
@@ -84,7 +84,7 @@ void add_target(const CameraCalibration& o, nlohmann::json& d, std::string& text
 /// The geometry of the cell, and what else the results of this kind are computed from.
 struct Measured {
   const CameraCalibration& options;
-  const CellDescription& cell;
+  const imaging::CellDescription& cell;
   const calibration::CellGeometry& geometry;
   std::string data;                                   // hash of the stack
   std::optional<calibration::SizeStatistics> census;  // of the beads; absent if none are found
@@ -93,14 +93,15 @@ struct Measured {
 };
 
 /// Sizes of the beads, located in the picture after correction of rotation and distortion.
-std::optional<calibration::SizeStatistics> census_of(const CameraCalibration& o, const CellDescription& cell,
+std::optional<calibration::SizeStatistics> census_of(const CameraCalibration& o,
+                                                     const imaging::CellDescription& cell,
                                                      const calibration::CellGeometry& g, const Common& common,
                                                      std::vector<std::string>& notes) {
-  LocatorOptions locator;
+  imaging::LocatorOptions locator;
   locator.preprocess.bright = o.flags.bright || cell.bright;
   locator.diameter_px = o.flags.diameter_px > 0 ? o.flags.diameter_px : cell.pixels_per_sigma.value_or(0);
-  std::optional<Lens> lens;
-  if (g.rotation_deg != 0 || g.distortion != 0) lens = Lens(g.size, g.rotation_deg, g.distortion);
+  std::optional<imaging::Lens> lens;
+  if (g.rotation_deg != 0 || g.distortion != 0) lens = imaging::Lens(g.size, g.rotation_deg, g.distortion);
   try {
     const auto frames = open_stack(o.flags.stack, common);
     ProgressBar bar(common, "beads");
@@ -113,7 +114,7 @@ std::optional<calibration::SizeStatistics> census_of(const CameraCalibration& o,
 }
 
 /// Pixels per sigma from the distance of the walls over the known width of the cell.
-std::optional<calibration::Estimate> scale_by_walls(const CellDescription& cell,
+std::optional<calibration::Estimate> scale_by_walls(const imaging::CellDescription& cell,
                                                     const calibration::CellGeometry& g) {
   if (!g.has_left || !g.has_right || !cell.width) return std::nullopt;
   double e = g.width_error_px() / *cell.width;
@@ -256,7 +257,7 @@ void report_edges(CalibrationResult& out, const calibration::CellGeometry& g) {
 }
 
 void run(const CameraCalibration& o, const Common& common) {
-  const CellDescription cell = cell_of(o.flags);
+  const imaging::CellDescription cell = cell_of(o.flags);
   CalibrationResult out;
   out.document["stack"] = o.flags.stack;
   calibration::StackEdges edges;

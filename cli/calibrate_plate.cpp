@@ -53,7 +53,7 @@ std::string list_of(const calibration::DriveFit& lock, calibration::FrameLock ki
   return n > kMostNamed ? s + ", ..." : s;
 }
 
-calibration::DriveFit lock_of(const PlateOptions& o, const CellDescription& cell,
+calibration::DriveFit lock_of(const PlateOptions& o, const imaging::CellDescription& cell,
                               const calibration::CellGeometry& g) {
   try {
     const int known = o.frames_per_cycle > 0 ? o.frames_per_cycle : cell.phase_lock.frames_per_cycle;
@@ -68,7 +68,7 @@ calibration::DriveFit lock_of(const PlateOptions& o, const CellDescription& cell
 /// What the results of this kind are computed from.
 struct Measured {
   const PlateOptions& options;
-  const CellDescription& cell;
+  const imaging::CellDescription& cell;
   const calibration::CellGeometry& geometry;
   calibration::DriveFit lock;
   std::optional<KnownNumber> scale;  // pixels per sigma
@@ -80,7 +80,7 @@ struct Measured {
 };
 
 /// Frames per second; a note where the stack contradicts the rate that was stated.
-std::optional<double> rate_of(const PlateOptions& o, const CellDescription& cell,
+std::optional<double> rate_of(const PlateOptions& o, const imaging::CellDescription& cell,
                               const calibration::StackEdges& edges, std::vector<std::string>& notes) {
   const std::optional<double> stated = o.frame_rate_hz ? o.frame_rate_hz : cell.frame_rate_hz;
   if (stated)
@@ -224,7 +224,7 @@ void compare_with(const calibration::VibrationTable& vibration, CalibrationResul
 }
 
 void run(const PlateOptions& o, const Common& common) {
-  const CellDescription cell = cell_of(o.flags);
+  const imaging::CellDescription cell = cell_of(o.flags);
   const std::optional<calibration::VibrationTable> vibration =
       o.accelerometer.empty() ? std::nullopt : std::optional(calibration::read_vibration(o.accelerometer));
   calibration::StackEdges edges;

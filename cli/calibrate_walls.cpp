@@ -48,7 +48,7 @@ void of_trajectory(const CalibrateFlags& flags, const Common& common) {
 }
 
 void of_stack(const CalibrateFlags& flags, const Common& common) {
-  const CellDescription cell = cell_of(flags);
+  const imaging::CellDescription cell = cell_of(flags);
   calibration::StackEdges edges;
   const calibration::CellGeometry g = geometry_of(flags, cell, common, edges);
   if (!g.has_left || !g.has_right)

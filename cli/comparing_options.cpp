@@ -39,7 +39,7 @@ twin::ComparingOptions comparing_options(const ComparingFlags& flags, const Comm
   options.tolerance = flags.tolerance;
   options.film = !flags.no_film;
   options.threads = common.n_threads();
-  if (!flags.camera_file.empty()) options.camera = read_camera(flags.camera_file);
+  if (!flags.camera_file.empty()) options.camera = imaging::read_camera(flags.camera_file);
   if (options.camera && common.seed) options.camera->seed = *common.seed;
   return options;
 }

@@ -21,44 +21,44 @@ constexpr std::array kDiameters = {6.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0};
 constexpr std::array kQuickDiameters = {8.0, 15.0};
 constexpr std::array kNoise = {164.0, 51.0, 18.5, 8.5};
 constexpr std::array kQuickNoise = {51.0, 18.5};
-const LocateSetting kUsual{};
+const imaging::LocateSetting kUsual{};
 constexpr int kTracers = 20,
               kPhases = 20;  // tracers in a line, and least phases per cycle (Fortini & Huang 2015)
 
 struct Measured {
-  std::vector<LocatePrecision> all;
-  LocateScene scene;
+  std::vector<imaging::LocatePrecision> all;
+  imaging::LocateScene scene;
   double accuracy;
 
   template <class Takes>
-  [[nodiscard]] std::vector<LocatePrecision> those(const Takes& takes) const {
-    std::vector<LocatePrecision> some;
+  [[nodiscard]] std::vector<imaging::LocatePrecision> those(const Takes& takes) const {
+    std::vector<imaging::LocatePrecision> some;
     std::copy_if(all.begin(), all.end(), std::back_inserter(some),
-                 [&](const LocatePrecision& p) { return takes(p.setting); });
+                 [&](const imaging::LocatePrecision& p) { return takes(p.setting); });
     return some;
   }
   [[nodiscard]] std::vector<double> noise() const {
     std::vector<double> levels;
-    for (const LocatePrecision& p : all)
+    for (const imaging::LocatePrecision& p : all)
       if (std::find(levels.begin(), levels.end(), p.setting.snr) == levels.end())
         levels.push_back(p.setting.snr);
     return levels;
   }
 };
 
-bool is_usual_picture(const LocateSetting& s) {
+bool is_usual_picture(const imaging::LocateSetting& s) {
   return s.diameter_px == kUsual.diameter_px && s.snr == kUsual.snr;
 }
-bool is_usual_way(const LocateSetting& s) {
+bool is_usual_way(const imaging::LocateSetting& s) {
   return s.finder == kUsual.finder && s.ring_px == kUsual.ring_px && s.method == kUsual.method;
 }
 
-std::vector<LocateSetting> settings(bool quick) {
-  std::vector<LocateSetting> all;
-  const auto add = [&](const LocateSetting& s) {
+std::vector<imaging::LocateSetting> settings(bool quick) {
+  std::vector<imaging::LocateSetting> all;
+  const auto add = [&](const imaging::LocateSetting& s) {
     if (std::find(all.begin(), all.end(), s) == all.end()) all.push_back(s);
   };
-  const auto ladder = [&](LocateSetting s, const auto& sweeps) {
+  const auto ladder = [&](imaging::LocateSetting s, const auto& sweeps) {
     for (const int n : sweeps) {
       s.sweeps = n;
       add(s);
@@ -73,7 +73,7 @@ std::vector<LocateSetting> settings(bool quick) {
     grid(kQuickSweeps, kQuickNoise, kQuickDiameters);
   else
     grid(kSweeps, kNoise, kDiameters);
-  for (const LocateSetting& s : std::vector(all))
+  for (const imaging::LocateSetting& s : std::vector(all))
     add({.method = "edges", .diameter_px = s.diameter_px, .snr = s.snr});
   for (const int n : {0, 30}) add({.finder = "hough", .sweeps = n});
   if (!quick)
@@ -81,7 +81,7 @@ std::vector<LocateSetting> settings(bool quick) {
   return all;
 }
 
-std::string way(const LocateSetting& s) {
+std::string way(const imaging::LocateSetting& s) {
   if (s.sweeps == 0) return s.finder + " alone";
   if (s.method == "edges") return s.finder + ", edges";
   std::string w = fmt::format(
@@ -91,8 +91,8 @@ std::string way(const LocateSetting& s) {
   return w;
 }
 
-nlohmann::json as_json(const LocatePrecision& p) {
-  const LocateSetting& s = p.setting;
+nlohmann::json as_json(const imaging::LocatePrecision& p) {
+  const imaging::LocateSetting& s = p.setting;
   return {{"finder", s.finder},
           {"refine", s.sweeps == 0 ? "none" : s.method},
           {"sweeps", s.sweeps},
@@ -109,8 +109,8 @@ nlohmann::json as_json(const LocatePrecision& p) {
           {"locking_by_chance_px", p.locking_by_chance},
           {"ms_per_frame", 1e3 * p.seconds},
           {"s_b_noise",
-           {{"one_tracer", bed_displacement_noise(p.relative(), 1, 1, kPhases)},
-            {"tracers", bed_displacement_noise(p.relative(), kTracers, 1, kPhases)}}}};
+           {{"one_tracer", imaging::bed_displacement_noise(p.relative(), 1, 1, kPhases)},
+            {"tracers", imaging::bed_displacement_noise(p.relative(), kTracers, 1, kPhases)}}}};
 }
 
 nlohmann::json as_json(const Measured& m) {
@@ -124,22 +124,22 @@ nlohmann::json as_json(const Measured& m) {
                       {"s_b_threshold", 1.0 / 30},
                       {"tracers", kTracers},
                       {"phases", kPhases}};
-  for (const LocatePrecision& p : m.all) d["settings"].push_back(as_json(p));
+  for (const imaging::LocatePrecision& p : m.all) d["settings"].push_back(as_json(p));
   d["front"] = nlohmann::json::array();
-  for (const LocatePrecision& p : front(m.all, kUsual.diameter_px, kUsual.snr))
+  for (const imaging::LocatePrecision& p : imaging::front(m.all, kUsual.diameter_px, kUsual.snr))
     d["front"].push_back(as_json(p));
   for (const double snr : m.noise()) {
-    const auto best = cheapest(m.all, kUsual.diameter_px, snr, m.accuracy);
+    const auto best = imaging::cheapest(m.all, kUsual.diameter_px, snr, m.accuracy);
     d["cheapest"].push_back({{"snr", snr}, {"setting", best ? as_json(*best) : nlohmann::json()}});
   }
   return d;
 }
 
-std::string table(const std::vector<LocatePrecision>& rows) {
+std::string table(const std::vector<imaging::LocatePrecision>& rows) {
   std::string s =
       fmt::format("  {:<22} {:>4} {:>5}  {:>7} {:>9}  {:>8} {:>8} {:>6}  {:>17}  {:>8}  {:>8}\n", "method",
                   "px", "SNR", "recall", "precision", "rms", "bound", "ratio", "bias", "locking", "ms");
-  for (const LocatePrecision& p : rows)
+  for (const imaging::LocatePrecision& p : rows)
     s += fmt::format(
         "  {:<22} {:>4g} {:>5g}  {:>7.4f} {:>9.4f}  {:>8.5f} {:>8.5f} {:>6.2f}  {:>+8.5f} {:>+8.5f}  "
         "{:>8.5f}  {:>8.1f}\n",
@@ -156,20 +156,20 @@ std::string as_text(const Measured& m) {
       "frame on one thread. \"fit\" sweeps until no bead moves.\n\n",
       m.scene.beads, m.scene.width, m.scene.height, m.scene.frames);
   s += table(m.those(is_usual_picture));
-  s += "\nOther noise levels\n" + table(m.those([](const LocateSetting& o) {
+  s += "\nOther noise levels\n" + table(m.those([](const imaging::LocateSetting& o) {
          return o.diameter_px == kUsual.diameter_px && o.snr != kUsual.snr;
        }));
   s += "\nOther numbers of pixels per bead\n" +
-       table(m.those([](const LocateSetting& o) { return o.diameter_px != kUsual.diameter_px; }));
+       table(m.those([](const imaging::LocateSetting& o) { return o.diameter_px != kUsual.diameter_px; }));
   s += fmt::format(
            "\nFront, {:g} px, SNR {:g}: of the methods that find every bead, no other is both faster and "
            "more accurate\n",
            kUsual.diameter_px, kUsual.snr) +
-       table(front(m.all, kUsual.diameter_px, kUsual.snr));
+       table(imaging::front(m.all, kUsual.diameter_px, kUsual.snr));
   s += fmt::format("\nFastest method with an rms error of at most {:g} px, {:g} px per bead\n", m.accuracy,
                    kUsual.diameter_px);
   for (const double snr : m.noise()) {
-    const auto best = cheapest(m.all, kUsual.diameter_px, snr, m.accuracy);
+    const auto best = imaging::cheapest(m.all, kUsual.diameter_px, snr, m.accuracy);
     s += best ? fmt::format("  SNR {:>5g}: {} ({:.4f} px), {:.1f} ms per frame\n", snr, way(best->setting),
                             best->rms, 1e3 * best->seconds)
               : fmt::format("  SNR {:>5g}: no measured method\n", snr);
@@ -179,12 +179,12 @@ std::string as_text(const Measured& m) {
       "{} phases\n"
       "  {:>4} {:>5}  {:<12} {:>12} {:>12}\n",
       kPhases, "px", "SNR", "method", "one tracer", fmt::format("{} tracers", kTracers));
-  for (const LocatePrecision& p : m.all) {
-    const LocateSetting& o = p.setting;
+  for (const imaging::LocatePrecision& p : m.all) {
+    const imaging::LocateSetting& o = p.setting;
     if (!is_usual_way(o) || (o.sweeps != 0 && o.sweeps != kUsual.sweeps)) continue;
     s += fmt::format("  {:>4g} {:>5g}  {:<12} {:>12.2f} {:>12.2f}\n", o.diameter_px, o.snr, way(o),
-                     3000 * bed_displacement_noise(p.relative(), 1, 1, kPhases),
-                     3000 * bed_displacement_noise(p.relative(), kTracers, 1, kPhases));
+                     3000 * imaging::bed_displacement_noise(p.relative(), 1, 1, kPhases),
+                     3000 * imaging::bed_displacement_noise(p.relative(), kTracers, 1, kPhases));
   }
   return s;
 }
@@ -198,11 +198,11 @@ class Panels {
     clauses_.emplace_back();
     errors_.push_back({.label = error, .logarithmic = true});
   }
-  void curve(const std::vector<LocatePrecision>& points, const std::string& title, const char* colour,
-             int shape, bool relative, bool line = true) {
+  void curve(const std::vector<imaging::LocatePrecision>& points, const std::string& title,
+             const char* colour, int shape, bool relative, bool line = true) {
     if (points.empty()) return;
     data_ += fmt::format("# {}: ms per frame, rms, bound, sweeps\n", title);
-    for (const LocatePrecision& p : points) {
+    for (const imaging::LocatePrecision& p : points) {
       const double unit = relative ? p.setting.diameter_px : 1;
       time_.show(1e3 * p.seconds);
       errors_.back().show(p.rms / unit);
@@ -245,20 +245,23 @@ analysis::Figure figure(const Measured& m) {
       .name = "locating", .title = "Accuracy against computing time", .width = 720, .height = 1080};
   Panels panels(f.name);
   panels.next("rms error per coordinate, px");
-  panels.curve(m.those([](const LocateSetting& s) { return is_usual_picture(s) && is_usual_way(s); }),
-               "vote, then 0, 1, 2 … sweeps", kColours[0], kShapes[0], false);
-  panels.curve(m.those([](const LocateSetting& s) { return is_usual_picture(s) && s.finder == "hough"; }),
-               "hough, alone and fitted", kColours[1], kShapes[1], false, false);
-  panels.curve(m.those([](const LocateSetting& s) { return is_usual_picture(s) && s.method == "edges"; }),
-               "vote, edges", kColours[3], kShapes[3], false, false);
-  panels.curve(m.those([](const LocateSetting& s) {
+  panels.curve(
+      m.those([](const imaging::LocateSetting& s) { return is_usual_picture(s) && is_usual_way(s); }),
+      "vote, then 0, 1, 2 … sweeps", kColours[0], kShapes[0], false);
+  panels.curve(
+      m.those([](const imaging::LocateSetting& s) { return is_usual_picture(s) && s.finder == "hough"; }),
+      "hough, alone and fitted", kColours[1], kShapes[1], false, false);
+  panels.curve(
+      m.those([](const imaging::LocateSetting& s) { return is_usual_picture(s) && s.method == "edges"; }),
+      "vote, edges", kColours[3], kShapes[3], false, false);
+  panels.curve(m.those([](const imaging::LocateSetting& s) {
     return is_usual_picture(s) && s.finder == kUsual.finder && s.ring_px != kUsual.ring_px;
   }),
                "rings of 1.5 to 5 px", kColours[2], kShapes[2], false, false);
   panels.next("rms error per coordinate, px");
   std::size_t k = 0;
   for (const double snr : m.noise()) {
-    panels.curve(m.those([&](const LocateSetting& s) {
+    panels.curve(m.those([&](const imaging::LocateSetting& s) {
       return s.diameter_px == kUsual.diameter_px && s.snr == snr && is_usual_way(s);
     }),
                  fmt::format("SNR {:g}", snr), kColours[k % 7], kShapes[k % 7], false);
@@ -267,12 +270,12 @@ analysis::Figure figure(const Measured& m) {
   panels.next("rms error per coordinate, σ");
   k = 0;
   std::vector<double> diameters;
-  for (const LocatePrecision& p : m.all)
+  for (const imaging::LocatePrecision& p : m.all)
     if (std::find(diameters.begin(), diameters.end(), p.setting.diameter_px) == diameters.end())
       diameters.push_back(p.setting.diameter_px);
   std::sort(diameters.begin(), diameters.end());
   for (const double d : diameters) {
-    panels.curve(m.those([&](const LocateSetting& s) {
+    panels.curve(m.those([&](const imaging::LocateSetting& s) {
       return s.diameter_px == d && s.snr == kUsual.snr && is_usual_way(s);
     }),
                  fmt::format("{:g} px", d), kColours[k % 7], kShapes[k % 7], true);
@@ -296,7 +299,7 @@ CostReport cost_of_locating(double accuracy_px, bool quick, const Common& common
   m.accuracy = accuracy_px;
   if (quick) m.scene = {.beads = 200, .width = 20, .height = 20, .frames = 1};
   ProgressBar bar(common, "errors and times");
-  m.all = locate_precision(settings(quick), m.scene, quick ? 1 : 5, bar);
+  m.all = imaging::locate_precision(settings(quick), m.scene, quick ? 1 : 5, bar);
   return {as_json(m), as_text(m), figure(m)};
 }
 

@@ -22,14 +22,14 @@ struct DrawOptions {
   std::string trajectory, frames, colour = kPlain;
   std::vector<double> range;
   bool fps_said = false;
-  DrawJob job;
+  imaging::DrawJob job;
 };
 
 void run(DrawOptions& o, const Common& common) {
   if (o.fps_said && !o.job.film())
     throw ConfigError({.file = {}, .key = "--fps"}, "applies to a film; the output is a picture.");
   require_output(o.job.output, o.job.film() ? Product::film() : Product::picture());
-  if (!o.frames.empty()) o.job.frames = read_frame_range(o.frames, "--frames");
+  if (!o.frames.empty()) o.job.frames = imaging::read_frame_range(o.frames, "--frames");
   if (!o.range.empty()) o.job.colours.range = {o.range[0], o.range[1]};
   const H5mdReader trajectory(o.trajectory);
   if (o.colour != kPlain) {
@@ -40,10 +40,10 @@ void run(DrawOptions& o, const Common& common) {
       return colouring.of({.source = trajectory, .index = index, .frame = frame});
     };
   }
-  Drawn drawn;
+  imaging::Drawn drawn;
   {
     ProgressBar bar(common, "draw");
-    drawn = draw(trajectory, o.job, bar);
+    drawn = imaging::draw(trajectory, o.job, bar);
   }
   nlohmann::json document = {{"output", o.job.output.string()},
                              {"frames", drawn.frames},

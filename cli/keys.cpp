@@ -19,7 +19,7 @@ namespace {
 
 /// All files with keys, in the order of the page.
 std::array<const KeyTable*, 4> tables() {
-  return {&cell_keys(), &sim::scene_keys(), &sweep::plan_keys(), &camera_keys()};
+  return {&imaging::cell_keys(), &sim::scene_keys(), &sweep::plan_keys(), &imaging::camera_keys()};
 }
 
 std::string range_of(const std::map<std::string, KeyRule>& rules, const std::string& key) {

@@ -39,7 +39,7 @@ struct LocateOptions {
   std::vector<double> scored_rows;
   std::int64_t overlay_frame = -1;  // -1: the first that is read
   bool explain = false;
-  LocatingRequest locating;
+  imaging::LocatingRequest locating;
 };
 
 // Headings of the tables. kHeading has trackpy's columns in trackpy's order, then the additional columns.
@@ -47,23 +47,23 @@ constexpr const char* kCandidateHeading = "frame,x,y,radius,darkness,interior,sc
 constexpr const char* kHeading =
     "y,x,mass,size,ecc,signal,raw_mass,ep,frame,radius,sigma_x,sigma_y,sigma_radius,score,tracer,edge\n";
 
-std::string row(const Detection& b, std::int64_t frame) {
-  const double ep = position_error(b);
+std::string row(const imaging::Detection& b, std::int64_t frame) {
+  const double ep = imaging::position_error(b);
   return fmt::format(
       "{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.2f},{:.5f},{},{:.4f},{:.5f},{:.5f},{:.5f},{:.4f},{},{}\n",
       b.y, b.x, b.mass, b.size, b.ecc, b.signal, b.raw_mass, ep, frame, b.radius, b.sigma_x, b.sigma_y,
       b.sigma_radius, b.score, b.tracer ? 1 : 0, b.edge ? 1 : 0);
 }
 
-nlohmann::json as_json(const Score& s) {
+nlohmann::json as_json(const imaging::Score& s) {
   return {{"recall", s.recall()},      {"precision", s.precision()},  {"rms_px", s.rms},
           {"rms_sure_px", s.rms_sure}, {"bias_x_px", s.bias_x},       {"bias_y_px", s.bias_y},
           {"truths", s.truths},        {"false_finds", s.false_finds}};
 }
 
-std::string candidate_row(const Detection& b, std::int64_t frame) {
+std::string candidate_row(const imaging::Detection& b, std::int64_t frame) {
   return fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{}\n", frame, b.x, b.y, b.radius,
-                     b.darkness, b.interior, b.score, b.ring_share, word_of(b.verdict));
+                     b.darkness, b.interior, b.score, b.ring_share, imaging::word_of(b.verdict));
 }
 
 /// A table that appears complete or not at all. If the name is empty, nothing is written.
@@ -92,26 +92,26 @@ class TableFile {
   std::ofstream out_;
 };
 
-nlohmann::json in_words(const std::map<Verdict, std::size_t>& counts) {
+nlohmann::json in_words(const std::map<imaging::Verdict, std::size_t>& counts) {
   nlohmann::json words = nlohmann::json::object();
-  for (const auto& [why, count] : counts) words[std::string(word_of(why))] = count;
+  for (const auto& [why, count] : counts) words[std::string(imaging::word_of(why))] = count;
   return words;
 }
 
 /// Warnings about the table: frames without beads, and candidates that were left out if they are many. Empty
 /// if there is no reason for doubt.
-std::string doubts(const std::map<Verdict, std::size_t>& left_out, std::size_t beads, std::size_t bare,
-                   std::size_t frames) {
+std::string doubts(const std::map<imaging::Verdict, std::size_t>& left_out, std::size_t beads,
+                   std::size_t bare, std::size_t frames) {
   constexpr double kMany = 0.02;  // of the beads
   std::string text;
   if (bare > 0) text += fmt::format("no bead in {} of {} frames\n", bare, frames);
   std::size_t all = 0, wrong_radius = 0;
   std::string reasons;
   for (const auto& [why, count] : left_out) {
-    if (why == Verdict::outside || why == Verdict::in_wall) continue;  // not visible beads
-    if (why == Verdict::wrong_radius) wrong_radius = count;
+    if (why == imaging::Verdict::outside || why == imaging::Verdict::in_wall) continue;  // not visible beads
+    if (why == imaging::Verdict::wrong_radius) wrong_radius = count;
     all += count;
-    reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, word_of(why));
+    reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, imaging::word_of(why));
   }
   const double many = kMany * static_cast<double>(beads);
   if (static_cast<double>(all) > many)
@@ -136,15 +136,15 @@ void run(LocateOptions& o, const Common& common) {
     o.output = stack.stem().string() + ".beads.csv";
   }
   // Inputs are read and outputs opened first, so that errors in them are reported before the work.
-  std::optional<std::vector<std::vector<TruthBead>>> truth;
-  if (!o.truth.empty()) truth = read_truth(o.truth);
-  ScoredRows rows;
+  std::optional<std::vector<std::vector<imaging::TruthBead>>> truth;
+  if (!o.truth.empty()) truth = imaging::read_truth(o.truth);
+  imaging::ScoredRows rows;
   if (o.scored_rows.size() == 2) rows = {o.scored_rows[0], o.scored_rows[1]};
-  Scorer scorer(rows);
+  imaging::Scorer scorer(rows);
 
-  const LocatorOptions given = locator_of(o.locating);
-  const Region region = region_of(o.locating);
-  const FrameRange range = frames_of(o.locating);
+  const imaging::LocatorOptions given = imaging::locator_of(o.locating);
+  const imaging::Region region = imaging::region_of(o.locating);
+  const imaging::FrameRange range = imaging::frames_of(o.locating);
   const std::string ending = std::filesystem::path(o.view).extension();
   for (const char* other : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".pdf", ".csv", ".json"})
     if (ending == other)
@@ -169,60 +169,60 @@ void run(LocateOptions& o, const Common& common) {
   const std::string refine = given.refine.method;
   const bool find_diameter = given.diameter_px <= 0, find_polarity = !given.polarity_known;
   std::vector<std::pair<std::string, std::string>> lines;  // of each frame, with --verbose
-  std::map<Verdict, std::size_t> left_out;
+  std::map<imaging::Verdict, std::size_t> left_out;
   std::size_t beads = 0, bare = 0;  // frames without a bead
   // Settings that the user did not give are determined from the first frames.
-  RegionFrames seen(*frames, region);
-  FramesAhead ahead(seen);
-  const auto [locator, settings_index, choice] = configure_locator(ahead, given);
+  imaging::RegionFrames seen(*frames, region);
+  imaging::FramesAhead ahead(seen);
+  const auto [locator, settings_index, choice] = imaging::configure_locator(ahead, given);
   const std::int64_t settings_frame = range.number(settings_index);
   std::optional<LocateView> view;
   if (!o.view.empty()) view.emplace(o.locating, region, locator, choice);
-  MotionInExposure motion;
-  const std::int64_t n = locate_stack(
+  imaging::MotionInExposure motion;
+  const std::int64_t n = imaging::locate_stack(
       ahead, locator, common.n_threads(),
-      [&](std::int64_t index, const cv::Mat& grey, const Located& as_located) {
+      [&](std::int64_t index, const cv::Mat& grey, const imaging::Located& as_located) {
         const std::int64_t frame = range.number(index);
-        const Located located = in_whole_picture(as_located, region);
-        for (const Detection& b : located.beads) table << row(b, frame);
-        for (const std::vector<Detection>* list : {&located.beads, &located.dropped})
-          for (const Detection& b : *list) candidates << candidate_row(b, frame);
+        const imaging::Located located = imaging::in_whole_picture(as_located, region);
+        for (const imaging::Detection& b : located.beads) table << row(b, frame);
+        for (const std::vector<imaging::Detection>* list : {&located.beads, &located.dropped})
+          for (const imaging::Detection& b : *list) candidates << candidate_row(b, frame);
         nlohmann::json f = {{"frame", frame}, {"beads", located.beads.size()}, {"blur_px", located.blur_px}};
         std::string line = fmt::format("frame {}: {}, edge blur {:.2f} px", frame,
                                        counted(located.beads.size(), "bead"), located.blur_px);
         motion.add(located);
         std::string stages;
-        for (const StageReport& stage : located.stages) {
+        for (const imaging::StageReport& stage : located.stages) {
           f["stages"][stage.stage] = {{"ms", 1000 * stage.seconds}, {"beads", stage.beads}};
           stages += fmt::format(" {} {:.1f} ms", stage.stage, 1000 * stage.seconds);
           if (stage.stage != "prepare") stages += fmt::format(" ({})", stage.beads);
         }
         if (common.verbose) lines.emplace_back(line, stages);
-        std::map<Verdict, std::size_t> reasons;
-        for (const Detection& b : located.dropped) ++reasons[b.verdict];
+        std::map<imaging::Verdict, std::size_t> reasons;
+        for (const imaging::Detection& b : located.dropped) ++reasons[b.verdict];
         f["dropped"] = in_words(reasons);
         for (const auto& [why, count] : reasons) left_out[why] += count;
         beads += located.beads.size();
         bare += located.beads.empty() ? 1 : 0;
         document["frames"].push_back(f);
         if (truth && static_cast<std::size_t>(frame) < truth->size()) {
-          std::vector<FoundBead> found;
-          for (const Detection& b : located.beads) found.push_back({b.x, b.y, -1});
+          std::vector<imaging::FoundBead> found;
+          for (const imaging::Detection& b : located.beads) found.push_back({b.x, b.y, -1});
           scorer.add((*truth)[static_cast<std::size_t>(frame)], found);
         }
         if (!o.overlay.empty() && frame == o.overlay_frame) {
-          write_overlay(o.overlay, grey, as_located.beads);
+          imaging::write_overlay(o.overlay, grey, as_located.beads);
           drawn = true;
         }
         if (view) view->add(frame, grey, located);
         if (!o.debug_folder.empty() && frame == o.overlay_frame)
-          write_debug_pictures(o.debug_folder, grey, locator);
+          imaging::write_debug_pictures(o.debug_folder, grey, locator);
       },
       bar);
   if (!o.overlay.empty() && !drawn)
     throw ConfigError(Where{.file = {}, .key = "--frame"},
                       fmt::format("is {}, but not among the {} frames that are read.", o.overlay_frame, n));
-  check_flat(o.locating.flat, locator.preprocess.bright);
+  imaging::check_flat(o.locating.flat, locator.preprocess.bright);
   table.commit();
   candidates.commit();
   if (view) {
@@ -246,7 +246,8 @@ void run(LocateOptions& o, const Common& common) {
         "move "
         "that far from frame to frame, or there is only one frame: no motion is concluded from it\n",
         unproven);
-  if (const nlohmann::json said = restrictions(o.locating); !said.is_null()) document["restrictions"] = said;
+  if (const nlohmann::json said = imaging::restrictions(o.locating); !said.is_null())
+    document["restrictions"] = said;
   // Report the settings that were determined from the frames, with the options that set them.
   document["diameter_px"] = locator.diameter_px;
   if (!locator.other_diameters_px.empty()) document["other_diameters_px"] = locator.other_diameters_px;
@@ -264,22 +265,23 @@ void run(LocateOptions& o, const Common& common) {
   }
   if (!choice.tried.empty()) document["settings_tried"] = settings_as_json(choice, refine);
   text += o.explain ? settings_table(choice, refine) : narrow_win(choice, refine);
-  if (refine != locator.refine.method && model_of(locator.refine) == DiscModel::circle)
+  if (refine != locator.refine.method && imaging::model_of(locator.refine) == imaging::DiscModel::circle)
     text += fmt::format(
         "the insides of the discs differ in {}: the discs are fitted by their rims (--refine edges)\n",
         shown);
-  if (refine != locator.refine.method && model_of(locator.refine) == DiscModel::shared_profile)
+  if (refine != locator.refine.method &&
+      imaging::model_of(locator.refine) == imaging::DiscModel::shared_profile)
     text += fmt::format(
         "the discs are alike but not plain in {}: they are fitted by their common profile (--refine "
         "profile)\n",
         shown);
-  if (locator.preprocess.contrast < 1 && model_of(locator.refine) != DiscModel::circle) {
+  if (locator.preprocess.contrast < 1 && imaging::model_of(locator.refine) != imaging::DiscModel::circle) {
     document["contrast"] = locator.preprocess.contrast;
     text += fmt::format("beads are pale: darkness is in units of {:.2f} of the light\n",
                         locator.preprocess.contrast);
   }
-  if (find_polarity &&
-      model_of(locator.refine) == DiscModel::shared_profile)  // they may have rings of both kinds
+  if (find_polarity && imaging::model_of(locator.refine) ==
+                           imaging::DiscModel::shared_profile)  // they may have rings of both kinds
     text += fmt::format("frames are read as with --{}, which explains {} better (--dark, --bright)\n",
                         locator.preprocess.bright ? "bright" : "dark", shown);
   else if (find_polarity)
@@ -290,7 +292,7 @@ void run(LocateOptions& o, const Common& common) {
   text += o.output + "\n";
   if (view) text += o.view + "\n";
   if (truth) {
-    const Score s = scorer.score();
+    const imaging::Score s = scorer.score();
     document["truth"] = as_json(s);
     text += fmt::format(
         "against the truth: recall {:.4f}, precision {:.4f}, rms {:.4f} px per coordinate, bias {:+.4f} "
@@ -325,7 +327,7 @@ void add_locate(CLI::App& program, Common& common) {
   writes(common, verb,
          verb.add_option("--debug-dir", o->debug_folder,
                          "Folder for pictures of the result of each stage in the frame --frame"),
-         debug_folder());
+         imaging::debug_folder());
   writes(common, verb,
          verb.add_option("--overlay", o->overlay,
                          "Picture of the frame --frame to write (PNG), with its beads marked"),

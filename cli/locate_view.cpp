@@ -40,9 +40,9 @@ json rounded_down(double value, int decimals) {
 }
 
 /// x, y, radius, score, darkness, interior, ring share, index of the verdict, edge or tracer.
-json candidate_json(const Detection& b) {
-  const auto verdict = std::find_if(kVerdicts.begin(), kVerdicts.end(),
-                                    [&](const Choice<Verdict>& c) { return c.value == b.verdict; });
+json candidate_json(const imaging::Detection& b) {
+  const auto verdict = std::find_if(imaging::kVerdicts.begin(), imaging::kVerdicts.end(),
+                                    [&](const Choice<imaging::Verdict>& c) { return c.value == b.verdict; });
   return {rounded(b.x, 2),
           rounded(b.y, 2),
           rounded(b.radius, 3),
@@ -50,20 +50,20 @@ json candidate_json(const Detection& b) {
           rounded(b.darkness, 3),
           rounded_down(b.interior, 4),
           rounded(b.ring_share, 3),
-          std::distance(kVerdicts.begin(), verdict),
+          std::distance(imaging::kVerdicts.begin(), verdict),
           b.tracer ? "tracer"
           : b.edge ? "edge"
                    : ""};
 }
 
-json candidates_json(const Located& located) {
+json candidates_json(const imaging::Located& located) {
   json list = json::array();
-  for (const std::vector<Detection>* part : {&located.beads, &located.dropped})
-    for (const Detection& b : *part) list.push_back(candidate_json(b));
+  for (const std::vector<imaging::Detection>* part : {&located.beads, &located.dropped})
+    for (const imaging::Detection& b : *part) list.push_back(candidate_json(b));
   return list;
 }
 
-FoundSettings settings_of(const LocatorOptions& options) {
+imaging::FoundSettings settings_of(const imaging::LocatorOptions& options) {
   return {.diameter_px = options.diameter_px,
           .bright = options.preprocess.bright,
           .explained = 0,
@@ -73,8 +73,8 @@ FoundSettings settings_of(const LocatorOptions& options) {
 }
 
 /// The limits of the judge, as locate_stages applies them.
-json judge_json(const LocatorOptions& o) {
-  const bool profile = model_of(o.refine) == DiscModel::shared_profile;
+json judge_json(const imaging::LocatorOptions& o) {
+  const bool profile = imaging::model_of(o.refine) == imaging::DiscModel::shared_profile;
   return {{"radius_tolerance", o.judge.radius_tolerance},
           {"min_interior", profile ? json(nullptr) : json(o.judge.min_interior)},
           {"min_score", o.judge.min_score},
@@ -131,13 +131,13 @@ Candidates that were never proposed, or that were dropped before they were fitte
 
 }  // namespace
 
-LocateView::LocateView(const LocatingRequest& request, const Region& region, const LocatorOptions& locator,
-                       const SettingsChoice& choice)
+LocateView::LocateView(const imaging::LocatingRequest& request, const imaging::Region& region,
+                       const imaging::LocatorOptions& locator, const imaging::SettingsChoice& choice)
     : request_(request), region_(region), choice_(choice), stored_{{.options = locator}} {
-  const LocatorOptions given = locator_of(request);
+  const imaging::LocatorOptions given = imaging::locator_of(request);
   const bool bright = locator.preprocess.bright;
-  const auto store = [&](const FoundSettings& settings) {
-    stored_.push_back({.options = completed(settings, given)});
+  const auto store = [&](const imaging::FoundSettings& settings) {
+    stored_.push_back({.options = imaging::completed(settings, given)});
     stored_.back().options.judge.drop_unlike = false;  // their command line states the diameter
     return stored_.size() - 1;
   };
@@ -145,12 +145,13 @@ LocateView::LocateView(const LocatingRequest& request, const Region& region, con
   index_of_.assign(choice.tried.size(), none);
   if (!index_of_.empty()) index_of_[0] = 0;
   // The sliders need the other polarity, so the best settings with it come first.
-  const auto flipped = std::find_if(choice.tried.begin(), choice.tried.end(),
-                                    [&](const TriedSettings& t) { return t.settings.bright != bright; });
+  const auto flipped =
+      std::find_if(choice.tried.begin(), choice.tried.end(),
+                   [&](const imaging::TriedSettings& t) { return t.settings.bright != bright; });
   if (flipped != choice.tried.end()) {
     index_of_[static_cast<std::size_t>(flipped - choice.tried.begin())] = store(flipped->settings);
   } else {
-    FoundSettings other = settings_of(locator);
+    imaging::FoundSettings other = settings_of(locator);
     other.bright = !bright;
     store(other);
   }
@@ -158,9 +159,9 @@ LocateView::LocateView(const LocatingRequest& request, const Region& region, con
     if (index_of_[k] == none) index_of_[k] = store(choice.tried[k].settings);
 }
 
-void LocateView::add(std::int64_t number, const cv::Mat& grey, const Located& located) {
+void LocateView::add(std::int64_t number, const cv::Mat& grey, const imaging::Located& located) {
   if (pictures_.size() >= kMostFrames) return;
-  const EncodedFrame picture = encoded_frame(grey);
+  const imaging::EncodedFrame picture = imaging::encoded_frame(grey);
   pictures_.push_back({{"number", number},
                        {"x", region_.corner().x},
                        {"y", region_.corner().y},
@@ -171,17 +172,18 @@ void LocateView::add(std::int64_t number, const cv::Mat& grey, const Located& lo
   dropped_ += located.dropped.size();
   stored_.front().frames.push_back(candidates_json(located));
   for (std::size_t k = 1; k < stored_.size(); ++k)
-    stored_[k].frames.push_back(candidates_json(in_whole_picture(locate(grey, stored_[k].options), region_)));
+    stored_[k].frames.push_back(
+        candidates_json(imaging::in_whole_picture(imaging::locate(grey, stored_[k].options), region_)));
 }
 
 json LocateView::data(const std::string& command) const {
   json document = {{"command", command},
                    {"given", command_words_of_discs(request_)},
-                   {"usual_score", LocatorOptions().judge.min_score},
+                   {"usual_score", imaging::LocatorOptions().judge.min_score},
                    {"frames", pictures_},
                    {"verdicts", json::array()},
                    {"sets", json::array()}};
-  for (const Choice<Verdict>& c : kVerdicts)
+  for (const Choice<imaging::Verdict>& c : imaging::kVerdicts)
     document["verdicts"].push_back({{"word", std::string(c.word)}, {"meaning", std::string(c.help)}});
   for (const Stored& s : stored_) {
     json diameters = {rounded(s.options.diameter_px, 2)};
@@ -214,12 +216,12 @@ std::string LocateView::page(const std::string& stack, const std::string& output
     html += "<p>None: diameter and polarity were given.</p>\n";
   } else {
     double most = 0;
-    for (const TriedSettings& t : choice_.tried) most = std::max(most, t.evidence);
+    for (const imaging::TriedSettings& t : choice_.tried) most = std::max(most, t.evidence);
     html +=
         "<div class=\"scroll\"><table><thead><tr><th>evidence, nats</th><th>share</th><th>beads</th>"
         "<th>settings</th></tr></thead><tbody>\n";
     for (std::size_t k = 0; k < choice_.tried.size(); ++k) {
-      const TriedSettings& t = choice_.tried[k];
+      const imaging::TriedSettings& t = choice_.tried[k];
       html += fmt::format(
           "<tr{}><td>{:.0f}</td><td>{:.3f}</td><td>{}</td><td><code>{}</code>{}</td></tr>\n",
           index_of_[k] < stored_.size() ? fmt::format(" data-set=\"{}\"", index_of_[k]) : std::string(),

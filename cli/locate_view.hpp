@@ -30,12 +30,12 @@ class LocateView {
   static constexpr std::size_t kMostFrames = 12;
 
   /// \pre `region` outlives this \param locator complete options of the run \param choice the settings tried
-  LocateView(const LocatingRequest& request, const Region& region, const LocatorOptions& locator,
-             const SettingsChoice& choice);
+  LocateView(const imaging::LocatingRequest& request, const imaging::Region& region,
+             const imaging::LocatorOptions& locator, const imaging::SettingsChoice& choice);
 
   /// Adds a frame; does nothing after kMostFrames.
   /// \param grey the region as it was located \param located by the run, in px of the whole picture
-  void add(std::int64_t number, const cv::Mat& grey, const Located& located);
+  void add(std::int64_t number, const cv::Mat& grey, const imaging::Located& located);
 
   /// The page, which refers to no other file.
   /// \param stack, output names of the command \param frames number of frames of the run
@@ -45,14 +45,14 @@ class LocateView {
  private:
   /// Settings whose candidates are stored.
   struct Stored {
-    LocatorOptions options;
+    imaging::LocatorOptions options;
     nlohmann::json frames = nlohmann::json::array();  ///< list of candidates for each frame
   };
   [[nodiscard]] nlohmann::json data(const std::string& command) const;
 
-  LocatingRequest request_;
-  const Region& region_;
-  SettingsChoice choice_;
+  imaging::LocatingRequest request_;
+  const imaging::Region& region_;
+  imaging::SettingsChoice choice_;
   std::vector<Stored> stored_;  ///< that of the run first
   std::vector<std::size_t>
       index_of_;  ///< for each of the settings tried, its index in stored_; else its size

@@ -13,7 +13,7 @@
 
 namespace twincell::cli {
 
-void add_locating_options(CLI::App& verb, LocatingRequest& request) {
+void add_locating_options(CLI::App& verb, imaging::LocatingRequest& request) {
   verb.add_option(
           "--diameter", request.diameters,
           "Bead diameter, px, or up to 8 different diameters; default: the scale in CELL.toml if there "
@@ -22,15 +22,16 @@ void add_locating_options(CLI::App& verb, LocatingRequest& request) {
       ->expected(1, 8);
   verb.add_option("--locator", request.locator.finder,
                   "Method that finds candidates for beads; default: vote")
-      ->check(CLI::IsMember(finder_names()));
+      ->check(CLI::IsMember(imaging::finder_names()));
   verb.add_option("--min-score", request.locator.find.min_score,
                   "Smallest share of the edge of a circle that must be visible, 0 to 1; default: 0.04");
   verb.add_option("--min-explained", request.locator.judge.min_score,
                   "Smallest score of a bead, 0 to 1: share of the variance around its edge that the disc "
                   "explains; default: 0.5");
-  verb.add_option("--refine", request.locator.refine.method,
-                  "Method that finds the position of each bead to a fraction of a pixel. " + refiners_help())
-      ->check(CLI::IsMember(refiner_names()));
+  verb.add_option(
+          "--refine", request.locator.refine.method,
+          "Method that finds the position of each bead to a fraction of a pixel. " + imaging::refiners_help())
+      ->check(CLI::IsMember(imaging::refiner_names()));
   CLI::Option* bright =
       verb.add_flag("--bright", request.locator.preprocess.bright, "Beads are brighter than the background");
   verb.add_flag(
@@ -57,8 +58,8 @@ void add_locating_options(CLI::App& verb, LocatingRequest& request) {
                   "default: all");
 }
 
-std::string command_words(const LocatingRequest& request) {
-  const LocatorOptions usual;
+std::string command_words(const imaging::LocatingRequest& request) {
+  const imaging::LocatorOptions usual;
   std::string words;
   const auto add = [&](const char* name, const std::string& value) {
     if (!value.empty()) words += fmt::format(" {} {}", name, shell_word(value));
@@ -74,8 +75,8 @@ std::string command_words(const LocatingRequest& request) {
   return words;
 }
 
-std::string command_words_of_discs(const LocatingRequest& request) {
-  const LocatorOptions usual;
+std::string command_words_of_discs(const imaging::LocatingRequest& request) {
+  const imaging::LocatorOptions usual;
   std::string words;
   if (!request.diameters.empty()) words += fmt::format(" --diameter {}", fmt::join(request.diameters, " "));
   if (request.dark) words += " --dark";
@@ -85,9 +86,11 @@ std::string command_words_of_discs(const LocatingRequest& request) {
   return words;
 }
 
-std::unique_ptr<FrameSource> open_for_locating(const std::string& stack, const LocatingRequest& request,
-                                               const LocatorOptions& locator, const Common& common) {
-  return prepare_frames(open_stack(stack, common), stack, request, locator);
+std::unique_ptr<imaging::FrameSource> open_for_locating(const std::string& stack,
+                                                        const imaging::LocatingRequest& request,
+                                                        const imaging::LocatorOptions& locator,
+                                                        const Common& common) {
+  return imaging::prepare_frames(open_stack(stack, common), stack, request, locator);
 }
 
 }  // namespace twincell::cli

@@ -218,7 +218,7 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return complain_of_memory(argc, argv);
   } catch (const std::exception& e) {
-    const auto fault = opencv_error(e);
+    const auto fault = imaging::opencv_error(e);
     if (fault && fault->out_of_memory) return complain_of_memory(argc, argv);
     if (fault) return complain_of_fault(argc, argv, "the image processing", fault->what.c_str());
     return complain_of_fault(argc, argv, "the program", e.what());

@@ -26,19 +26,19 @@ namespace {
 struct MatchOptions {
   twin::TwinOptions twin;
   std::vector<std::filesystem::path> stacks_and_cells;
-  PhaseRequest phase;
-  LocatingRequest locating;
+  imaging::PhaseRequest phase;
+  imaging::LocatingRequest locating;
   std::string output;
   ComparingFlags flags;
 };
 
 twin::TwinProvenance provenance_of(const Common& common, const twin::TwinOptions& options,
-                                   const LocatingRequest& locating) {
+                                   const imaging::LocatingRequest& locating) {
   return {.of_experiment =
-              [&common, &options, &locating](const CellDescription& cell) {
+              [&common, &options, &locating](const imaging::CellDescription& cell) {
                 Provenance p = common.provenance();
                 p.config = cell.text;
-                p.inputs = {file_of_stack(options.stack), options.cell_file};
+                p.inputs = {imaging::file_of_stack(options.stack), options.cell_file};
                 for (const std::string& file : {locating.mask, locating.background})
                   if (!file.empty()) p.inputs.emplace_back(file);
                 return p.to_json();
@@ -51,7 +51,7 @@ twin::TwinProvenance provenance_of(const Common& common, const twin::TwinOptions
 
 /// Notes the values of the cell that replace measured ones.
 void note_overridden(const Common& common, const std::filesystem::path& cell_file) {
-  const CellDescription cell = read_cell(cell_file);
+  const imaging::CellDescription cell = imaging::read_cell(cell_file);
   if (cell.included.overridden.empty()) return;
   note(common, fmt::format("values in {} take precedence over those measured in {}: {}", cell_file.string(),
                            cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
@@ -87,12 +87,13 @@ std::string as_text(const twin::Twin& twin) {
 
 /// The options of a twin with what the command line and the cell say about beads and phases.
 twin::TwinOptions configure_twin(const MatchOptions& o, twin::TwinOptions options, const Common& common) {
-  CellDescription cell = read_cell(options.cell_file);
-  for (const std::string& doubt : implausible_numbers(shaken_cell(cell))) note(common, doubt);
-  options.phases = phase_source(o.phase, cell, options.cell_file.string());
-  options.phase_lock = lock_of_chosen(cell.phase_lock, frames_of(o.locating));
-  options.locator = locator_of(o.locating, cell.pixels_per_sigma, cell.bright);
-  options.region = region_of(o.locating);
+  imaging::CellDescription cell = imaging::read_cell(options.cell_file);
+  for (const std::string& doubt : imaging::implausible_numbers(imaging::shaken_cell(cell)))
+    note(common, doubt);
+  options.phases = imaging::phase_source(o.phase, cell, options.cell_file.string());
+  options.phase_lock = imaging::lock_of_chosen(cell.phase_lock, imaging::frames_of(o.locating));
+  options.locator = imaging::locator_of(o.locating, cell.pixels_per_sigma, cell.bright);
+  options.region = imaging::region_of(o.locating);
   options.open_stack = [&o, &common, stack = options.stack.string(), locator = options.locator] {
     return open_for_locating(stack, o.locating, locator, common);
   };
@@ -141,7 +142,7 @@ void run(const Common& common, const MatchOptions& o) {
   twin::ComparingOptions options = configuration(o, common);
   const twin::StacksAndCells pairs = twin::pair_stacks(o.stacks_and_cells);
   // A mistake in the last cell must not appear after the first hour.
-  for (const auto& cell : pairs.cells) (void)read_cell(cell);
+  for (const auto& cell : pairs.cells) (void)imaging::read_cell(cell);
   const std::vector<twin::Twin> twins = make_twins(common, o, pairs, options);
   std::string text;
   for (const twin::Twin& twin : twins) text += as_text(twin);

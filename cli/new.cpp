@@ -132,7 +132,7 @@ nlohmann::json write_one(const Common& common, NewOptions& o, const fs::path& st
   for (const auto* sentences : {&survey.notes, &draft.notes})
     for (const std::string& sentence : *sentences) note(common, sentence);
   write_text_file(cell, twin::cell_text(draft, survey, kHead + one_line(common.command_line)), cell_file());
-  write_png(picture, twin::draw_cell(survey, draft));
+  imaging::write_png(picture, twin::draw_cell(survey, draft));
   said += stack.string() + "\n" + table_of(draft);
   for (const twin::NotMeasured& m : survey.missing)
     said += fmt::format("  not measured: {}, because {}; {}\n", m.what, m.why, m.remedy);
@@ -162,7 +162,7 @@ void run(const Common& common, NewOptions& o) {
         fmt::format("is one strength, but there are {} stacks; state --drive-hz and --sigma-mm, "
                     "which give the Gamma of each stack, or call new for each stack.",
                     o.stacks.size()));
-  for (const std::string& stack : o.stacks) protect_input(file_of_stack(stack));
+  for (const std::string& stack : o.stacks) protect_input(imaging::file_of_stack(stack));
   const std::vector<std::string> names = twin::names_of_stacks({o.stacks.begin(), o.stacks.end()});
   if (several) claim_shared_folder(output, twin::cells_folder());
   nlohmann::json cells = nlohmann::json::array();

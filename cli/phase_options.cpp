@@ -17,14 +17,14 @@ namespace {
 // The values of --phase-lock with their help.
 std::string phase_methods_help() {
   std::string text;
-  for (const PhaseMethodRow& row : kPhaseMethods)
+  for (const imaging::PhaseMethodRow& row : imaging::kPhaseMethods)
     text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", row.option, row.help);
   return text;
 }
 
 }  // namespace
 
-void add_phase_options(CLI::App& verb, PhaseRequest& request) {
+void add_phase_options(CLI::App& verb, imaging::PhaseRequest& request) {
   verb.add_option("--phase-lock", request.phase_lock, "Source of the drive phases. " + phase_methods_help());
   verb.add_option(
           "--drive-hz", request.drive_hz,
@@ -32,40 +32,40 @@ void add_phase_options(CLI::App& verb, PhaseRequest& request) {
       ->check(above_zero());
 }
 
-std::string phases_in_words(const PhaseTable& p) {
+std::string phases_in_words(const imaging::PhaseTable& p) {
   std::string text;
-  if (p.method == PhaseMethod::none) {
+  if (p.method == imaging::PhaseMethod::none) {
     text = "phase lock: none\n";
   } else {
-    text = fmt::format("phase lock: {}, {} frames per cycle", row_of(kPhaseMethods, p.method).word,
+    text = fmt::format("phase lock: {}, {} frames per cycle", row_of(imaging::kPhaseMethods, p.method).word,
                        p.frames_per_cycle);
     if (p.period_frames) text += fmt::format(", period {:.4f} frames", *p.period_frames);
     if (!p.checked_by.empty())
-      text += (p.method == PhaseMethod::found ? ", by " : ", checked by ") + p.checked_by;
+      text += (p.method == imaging::PhaseMethod::found ? ", by " : ", checked by ") + p.checked_by;
     if (!p.not_checked.empty()) text += " (not checked: " + p.not_checked + ")";
-    if (p.offset != 0 && p.method == PhaseMethod::triggers)
+    if (p.offset != 0 && p.method == imaging::PhaseMethod::triggers)
       text += fmt::format(", all {:+.3f} frames after their phases", p.offset);
     if (p.jitter)
-      text += fmt::format(", jitter {}{:.3f} frames", p.method == PhaseMethod::found ? "at most " : "",
-                          *p.jitter);
+      text += fmt::format(", jitter {}{:.3f} frames",
+                          p.method == imaging::PhaseMethod::found ? "at most " : "", *p.jitter);
     if (!p.frames.empty()) text += fmt::format(", {} frames dropped, {} taken twice", p.dropped, p.doubled);
     // No triggered camera is known to miss so many frames. A camera that runs free of the drive slips
     // continually.
     constexpr double kMostSlips = 0.1;
-    if (p.method == PhaseMethod::found &&
+    if (p.method == imaging::PhaseMethod::found &&
         static_cast<double>(p.dropped + p.doubled) > kMostSlips * static_cast<double>(p.frames.size()))
       text += " (so many that the camera seems to run free of the drive; the phases are then meaningless)";
     if (p.agreement)
       text += fmt::format("; phase 0 placed by the drive, correlation {:.3f}", *p.agreement);
-    else if (p.method == PhaseMethod::found && p.checked_by.empty())
+    else if (p.method == imaging::PhaseMethod::found && p.checked_by.empty())
       text += "; phase 0 is where the bed passes its mean height upwards";
     text += '\n';
   }
   return text;
 }
 
-nlohmann::json json_of(const PhaseTable& p) {
-  nlohmann::json lock = {{"method", row_of(kPhaseMethods, p.method).word}};
+nlohmann::json json_of(const imaging::PhaseTable& p) {
+  nlohmann::json lock = {{"method", row_of(imaging::kPhaseMethods, p.method).word}};
   if (p.locked()) lock["frames_per_cycle"] = p.frames_per_cycle;
   lock["dropped"] = p.dropped;
   lock["doubled"] = p.doubled;

@@ -15,10 +15,10 @@ class App;
 namespace twincell::cli {
 
 /// Adds --phase-lock and --drive-hz.
-void add_phase_options(CLI::App& verb, PhaseRequest& request);
+void add_phase_options(CLI::App& verb, imaging::PhaseRequest& request);
 
 /// The phases of a stack for the user, as one line of text and as JSON.
-std::string phases_in_words(const PhaseTable& phases);
-nlohmann::json json_of(const PhaseTable& phases);
+std::string phases_in_words(const imaging::PhaseTable& phases);
+nlohmann::json json_of(const imaging::PhaseTable& phases);
 
 }  // namespace twincell::cli

@@ -19,18 +19,19 @@ namespace {
 
 struct RenderOptions {
   std::string trajectory, camera_file;
-  RenderJob job;
-  CameraOptions flags;  ///< values given on the command line
+  imaging::RenderJob job;
+  imaging::CameraOptions flags;  ///< values given on the command line
   std::vector<std::pair<const CLI::Option*, std::size_t>>
       given;  ///< options and their indices in camera_option_list()
 };
 
 // The camera of the file, with the options of the command line taking precedence. If an option sets a
 // quantity that can be given in several units, its unit replaces that of the file.
-CameraOptions camera_of(RenderOptions& o, const Common& common) {
-  CameraOptions camera = o.camera_file.empty() ? CameraOptions{} : read_camera(o.camera_file);
-  const auto said = camera_option_list(o.flags), kept = camera_option_list(camera);
-  std::map<const CameraUnit*, std::string> spelt;
+imaging::CameraOptions camera_of(RenderOptions& o, const Common& common) {
+  imaging::CameraOptions camera =
+      o.camera_file.empty() ? imaging::CameraOptions{} : imaging::read_camera(o.camera_file);
+  const auto said = imaging::camera_option_list(o.flags), kept = imaging::camera_option_list(camera);
+  std::map<const imaging::CameraUnit*, std::string> spelt;
   for (const auto& [option, i] : o.given) {
     if (option->count() == 0) continue;
     std::visit([&said, place = i](auto* value) { *value = *std::get<decltype(value)>(said[place].value); },
@@ -50,13 +51,13 @@ void run(RenderOptions& o, const Common& common) {
   if (o.job.folder.empty() && o.job.movie.empty())
     throw ConfigError(Where{.file = {}, .key = "--output"},
                       "and --movie are both missing; give at least one of them.");
-  const CameraOptions camera = camera_of(o, common);
+  const imaging::CameraOptions camera = camera_of(o, common);
   o.job.threads = common.n_threads();
   const H5mdReader trajectory(o.trajectory);
-  Rendered done;
+  imaging::Rendered done;
   {
     ProgressBar bar(common, "render");
-    done = render(trajectory, camera, o.job, bar);
+    done = imaging::render(trajectory, camera, o.job, bar);
   }
   nlohmann::json document = {
       {"frames", done.frames}, {"dropped", done.dropped}, {"doubled", done.doubled}, {"seed", camera.seed}};
@@ -86,7 +87,7 @@ void add_render(CLI::App& program, Common& common) {
   writes(common, verb,
          verb.add_option("-o,--output", o->job.folder,
                          "Folder for the frames, truth.csv, frames.csv, CELL.toml and CAMERA.toml"),
-         rendered_stack());
+         imaging::rendered_stack());
   CLI::Option* const movie =
       writes(common, verb, verb.add_option("--movie", o->job.movie, "Film to write (.mp4 or .avi), 8 bit"),
              Product::film());
@@ -94,7 +95,7 @@ void add_render(CLI::App& program, Common& common) {
       ->needs(movie);
   verb.add_option("--camera", o->camera_file,
                   "CAMERA.toml with any of the options below; options on the command line take precedence");
-  const auto list = camera_option_list(o->flags);
+  const auto list = imaging::camera_option_list(o->flags);
   for (std::size_t i = 0; i < list.size(); ++i)
     std::visit(
         [&](auto* value) {

@@ -9,7 +9,7 @@
 
 namespace twincell::cli {
 
-std::string options_of(const FoundSettings& settings, const std::string& refine) {
+std::string options_of(const imaging::FoundSettings& settings, const std::string& refine) {
   std::string text = fmt::format("--diameter {:.2f}", settings.diameter_px);
   for (const double other : settings.other_diameters_px) text += fmt::format(" {:.2f}", other);
   text += settings.bright ? " --bright" : " --dark";
@@ -17,20 +17,20 @@ std::string options_of(const FoundSettings& settings, const std::string& refine)
   return text + " --refine " + method;
 }
 
-std::string settings_table(const SettingsChoice& choice, const std::string& refine) {
+std::string settings_table(const imaging::SettingsChoice& choice, const std::string& refine) {
   if (choice.tried.empty())
     return "no settings were tried: diameter and polarity are given, or nothing is seen\n";
   double most = 0;
-  for (const TriedSettings& t : choice.tried) most = std::max(most, t.evidence);
+  for (const imaging::TriedSettings& t : choice.tried) most = std::max(most, t.evidence);
   std::string text = "evidence/nats   share  beads  settings\n";
-  for (const TriedSettings& t : choice.tried)
+  for (const imaging::TriedSettings& t : choice.tried)
     text += fmt::format("{:13.0f}  {:6.3f}  {:5}  {}{}\n", t.evidence, t.evidence / most, t.beads,
                         options_of(t.settings, refine), &t == &choice.tried.front() ? "  (chosen)" : "");
   return text + settings_lead(choice, refine);
 }
 
-std::string settings_lead(const SettingsChoice& choice, const std::string& refine) {
-  const std::size_t k = runner_up(choice);
+std::string settings_lead(const imaging::SettingsChoice& choice, const std::string& refine) {
+  const std::size_t k = imaging::runner_up(choice);
   if (k == 0) return "no other discs were considered\n";
   const double lead = choice.tried.front().evidence - choice.tried[k].evidence;
   const std::string other = options_of(choice.tried[k].settings, refine);
@@ -38,20 +38,20 @@ std::string settings_lead(const SettingsChoice& choice, const std::string& refin
     return fmt::format(
         "the best settings with other discs have {:.0f} nats more, less than the factor {:g} at which they "
         "replace the preferred ones: {}\n",
-        -lead, kClearly, other);
+        -lead, imaging::kClearly, other);
   return fmt::format("the best settings with other discs have {:.0f} nats less: {}\n", lead, other);
 }
 
-std::string narrow_win(const SettingsChoice& choice, const std::string& refine) {
-  const std::size_t k = narrow_runner_up(choice);
+std::string narrow_win(const imaging::SettingsChoice& choice, const std::string& refine) {
+  const std::size_t k = imaging::narrow_runner_up(choice);
   if (k == 0) return {};
   return fmt::format("other settings explain the picture nearly as well; compare --overlay with: {}\n",
                      options_of(choice.tried[k].settings, refine));
 }
 
-nlohmann::json settings_as_json(const SettingsChoice& choice, const std::string& refine) {
+nlohmann::json settings_as_json(const imaging::SettingsChoice& choice, const std::string& refine) {
   nlohmann::json list = nlohmann::json::array();
-  for (const TriedSettings& t : choice.tried)
+  for (const imaging::TriedSettings& t : choice.tried)
     list.push_back({{"options", options_of(t.settings, refine)},
                     {"evidence", t.evidence},
                     {"beads", t.beads},

@@ -11,20 +11,20 @@ namespace twincell::cli {
 
 /// The options that select settings: "--diameter 14.00 --dark --refine profile".
 /// \param refine the refiner of settings that name none
-std::string options_of(const FoundSettings& settings, const std::string& refine);
+std::string options_of(const imaging::FoundSettings& settings, const std::string& refine);
 
 /// One line for each of the settings: evidence, its share of the largest, number of beads, options. The
 /// chosen ones come first. Below it, by how much they won over the best settings with other discs.
-std::string settings_table(const SettingsChoice& choice, const std::string& refine);
+std::string settings_table(const imaging::SettingsChoice& choice, const std::string& refine);
 
 /// By how much the chosen settings won over the best ones with other discs, in a sentence. \pre choice.tried
 /// is not empty
-std::string settings_lead(const SettingsChoice& choice, const std::string& refine);
+std::string settings_lead(const imaging::SettingsChoice& choice, const std::string& refine);
 
 /// If the chosen settings won narrowly, a sentence with the options of the runner-up; otherwise empty.
-std::string narrow_win(const SettingsChoice& choice, const std::string& refine);
+std::string narrow_win(const imaging::SettingsChoice& choice, const std::string& refine);
 
 /// List of objects with "options", "evidence", "beads" and "chosen"; in the order of the table.
-nlohmann::json settings_as_json(const SettingsChoice& choice, const std::string& refine);
+nlohmann::json settings_as_json(const imaging::SettingsChoice& choice, const std::string& refine);
 
 }  // namespace twincell::cli

@@ -40,7 +40,7 @@ struct Values {
 
 // Adds notes on suspicious grey values of the first frame: constant, saturated, shifted, or above the stated
 // depth.
-void judge_values(const Values& v, const StackInfo& info, bool whole_numbers, nlohmann::json& d) {
+void judge_values(const Values& v, const imaging::StackInfo& info, bool whole_numbers, nlohmann::json& d) {
   if (v.smallest == v.largest) {
     d["notes"].push_back(
         fmt::format("every pixel of the first frame has the value {:g}: the frame is blank.", v.largest));
@@ -70,8 +70,8 @@ void judge_values(const Values& v, const StackInfo& info, bool whole_numbers, nl
 
 }  // namespace
 
-std::unique_ptr<FrameSource> open_stack(const std::filesystem::path& stack, const Common& common) {
-  auto frames = open_frames(stack);
+std::unique_ptr<imaging::FrameSource> open_stack(const std::filesystem::path& stack, const Common& common) {
+  auto frames = imaging::open_frames(stack);
   for (const std::string& sentence : frames->info().notes) note(common, stack.string() + ": " + sentence);
   return frames;
 }
@@ -85,10 +85,10 @@ bool is_trajectory(const std::filesystem::path& file) {
 }
 
 nlohmann::json describe_stack(const std::filesystem::path& stack) {
-  const auto frames = open_frames(stack);
+  const auto frames = imaging::open_frames(stack);
   cv::Mat frame;
   (void)frames->next(frame);
-  const StackInfo info = frames->info();
+  const imaging::StackInfo info = frames->info();
   Values v;
   if (frame.depth() == CV_8U) v.take<std::uint8_t>(frame);
   if (frame.depth() == CV_16U) v.take<std::uint16_t>(frame);

@@ -14,7 +14,7 @@ namespace twincell::cli {
 struct Common;
 
 /// Calls open_frames() and prints the notes of the stack on stderr.
-std::unique_ptr<FrameSource> open_stack(const std::filesystem::path& stack, const Common& common);
+std::unique_ptr<imaging::FrameSource> open_stack(const std::filesystem::path& stack, const Common& common);
 
 /// Whether a file is an HDF5 file with a group h5md. A file named .h5 that is not HDF5 also counts, so that
 /// the reader of trajectories refuses it with its own message.

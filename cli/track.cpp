@@ -39,14 +39,15 @@ struct TrackOptions {
 
 constexpr const char* kHeading = "y,x,frame,particle,radius,tracer,phase,cycle,sigma_y,sigma_x,ambiguous\n";
 
-void write_csv(const std::string& path, const TrackedStack& stack, const FrameRange& range) {
+void write_csv(const std::string& path, const imaging::TrackedStack& stack,
+               const imaging::FrameRange& range) {
   AtomicPath file(path, Product::table(kHeading));
   {
     std::ofstream out(file.part());
     out << kHeading;
     for (std::size_t f = 0; f < stack.frames.size(); ++f) {
-      const FramePhase at = stack.phases.at(static_cast<std::int64_t>(f));
-      for (const TrackedBead& b : stack.frames[f])
+      const imaging::FramePhase at = stack.phases.at(static_cast<std::int64_t>(f));
+      for (const imaging::TrackedBead& b : stack.frames[f])
         out << fmt::format("{:.4f},{:.4f},{},{},{:.4f},{},{},{},{:.4f},{:.4f},{}\n", b.y_px, b.x_px,
                            range.number(static_cast<std::int64_t>(f)), b.track, b.radius_px, b.tracer ? 1 : 0,
                            at.phase, at.cycle, b.sigma_y_px, b.sigma_x_px, b.ambiguous ? 1 : 0);
@@ -56,23 +57,25 @@ void write_csv(const std::string& path, const TrackedStack& stack, const FrameRa
   file.commit();
 }
 
-Score score_against(const TrackOptions& o, const TrackedStack& stack, const FrameRange& range) {
-  const auto truth = read_truth(o.truth);
-  Scorer scorer(o.scored_rows.size() == 2 ? ScoredRows{o.scored_rows[0], o.scored_rows[1]} : ScoredRows{});
+imaging::Score score_against(const TrackOptions& o, const imaging::TrackedStack& stack,
+                             const imaging::FrameRange& range) {
+  const auto truth = imaging::read_truth(o.truth);
+  imaging::Scorer scorer(o.scored_rows.size() == 2 ? imaging::ScoredRows{o.scored_rows[0], o.scored_rows[1]}
+                                                   : imaging::ScoredRows{});
   for (std::size_t f = 0; f < stack.frames.size(); ++f) {
     const auto number = static_cast<std::size_t>(range.number(static_cast<std::int64_t>(f)));
     if (number >= truth.size()) break;
-    std::vector<FoundBead> found;
-    for (const TrackedBead& b : stack.frames[f]) found.push_back({b.x_px, b.y_px, b.track});
+    std::vector<imaging::FoundBead> found;
+    for (const imaging::TrackedBead& b : stack.frames[f]) found.push_back({b.x_px, b.y_px, b.track});
     scorer.add(truth[number], found);
   }
   return scorer.score();
 }
 
 // The printed summary of the phases, the links and the tracers.
-std::string describe(const TrackedStack& stack) {
+std::string describe(const imaging::TrackedStack& stack) {
   std::string text = phases_in_words(stack.phases);
-  const LinkReport& l = stack.links;
+  const imaging::LinkReport& l = stack.links;
   text += fmt::format(
       "links: {} made, {} bridge a gap, {} ambiguous; {} births, {} losses; largest sub-network {}; {} "
       "frames matched again, all beads at once\n",
@@ -82,7 +85,7 @@ std::string describe(const TrackedStack& stack) {
         "frames too crowded for an exact solution: {} beads were linked to their nearest free detection\n",
         l.unsolved);
   std::int64_t tracers = 0, uncertain = 0;
-  for (const TrackSummary& t : stack.tracks) {
+  for (const imaging::TrackSummary& t : stack.tracks) {
     tracers += t.is_tracer() ? 1 : 0;
     uncertain += t.is_tracer() && t.ambiguous > 0 ? 1 : 0;
   }
@@ -92,7 +95,7 @@ std::string describe(const TrackedStack& stack) {
         "tracers: {} tracks, {} of them with ambiguous links, {} not from the first frame to the last",
         tracers, uncertain, broken.size());
     for (std::size_t i = 0; i < std::min<std::size_t>(broken.size(), 5); ++i) {
-      const TrackSummary& t = stack.tracks[static_cast<std::size_t>(broken[i])];
+      const imaging::TrackSummary& t = stack.tracks[static_cast<std::size_t>(broken[i])];
       text += fmt::format("{} {} (frames {} to {})", i == 0 ? ": track" : ",", broken[i], t.first, t.last);
     }
     text += broken.size() > 5 ? ", ...\n" : "\n";
@@ -105,7 +108,7 @@ void run(TrackOptions& o, const Common& common) {
   const std::filesystem::path parent = std::filesystem::path(o.output).parent_path();
   o.film.folder = parent.empty() ? "." : parent;
   o.film.threads = common.n_threads();
-  const auto open = [&](const LocatorOptions& locator) {
+  const auto open = [&](const imaging::LocatorOptions& locator) {
     return open_for_locating(o.stack, o.film.locating, locator, common);
   };
   calibration::TrackedFilm film = calibration::track_film(
@@ -114,30 +117,31 @@ void run(TrackOptions& o, const Common& common) {
         return std::make_unique<ProgressBar>(common, stage);
       },
       profile.times());
-  const CellDescription& cell = film.cell;
-  const TrackedStack& stack = film.stack;
-  TrackPlan& plan = film.plan;
+  const imaging::CellDescription& cell = film.cell;
+  const imaging::TrackedStack& stack = film.stack;
+  imaging::TrackPlan& plan = film.plan;
   if (!cell.included.overridden.empty())
     note(common,
          fmt::format("values in {} take precedence over those measured in {}: {}", o.film.request.cell_file,
                      cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
-  for (const std::string& doubt : implausible_numbers(shaken_cell(cell))) note(common, doubt);
+  for (const std::string& doubt : imaging::implausible_numbers(imaging::shaken_cell(cell)))
+    note(common, doubt);
   if (!film.check.disagreement.empty())
     note(common,
          "the stated drive does not fit the film: " + film.check.disagreement + " (--trust-stated-drive).");
   if (!stack.phases.warning.empty()) note(common, stack.phases.warning + ".");
-  const FrameRange range = frames_of(o.film.locating);
+  const imaging::FrameRange range = imaging::frames_of(o.film.locating);
   // Write the trajectory, then the table.
   Provenance provenance = common.provenance();
   provenance.config = cell.text;
-  provenance.inputs.push_back(file_of_stack(o.stack));
+  provenance.inputs.push_back(imaging::file_of_stack(o.stack));
   for (const std::string& file : {o.film.locating.mask, o.film.locating.background})
     if (!file.empty()) provenance.inputs.emplace_back(file);
   plan.info.provenance_json = provenance.to_json();
   {
     Stage writing(profile.times(), "writing", "frames");
     H5mdWriter writer(o.output, plan.info);
-    write_trajectory(stack, plan, writer);
+    imaging::write_trajectory(stack, plan, writer);
     writer.finish();
     if (!o.csv.empty()) write_csv(o.csv, stack, range);
     writing.count(static_cast<double>(stack.frames.size()));
@@ -152,7 +156,7 @@ void run(TrackOptions& o, const Common& common) {
          "plate is absent.");
   // Result.
   std::int64_t beads = 0;
-  for (const TrackSummary& t : stack.tracks) beads += t.seen;
+  for (const imaging::TrackSummary& t : stack.tracks) beads += t.seen;
   nlohmann::json document = {{"stack", o.stack},
                              {"output", o.output},
                              {"frames", stack.frames.size()},
@@ -162,7 +166,7 @@ void run(TrackOptions& o, const Common& common) {
                              {"outside_cell", stack.outside_cell},
                              {"wrong_radius", stack.wrong_radius}};
   document.update(nlohmann::json::parse(plan.info.tracking_json));
-  if (const nlohmann::json said = restrictions(o.film.locating); !said.is_null())
+  if (const nlohmann::json said = imaging::restrictions(o.film.locating); !said.is_null())
     document["restrictions"] = said;
   std::string text = fmt::format("{}, {} located, {} ({} written), {} outside the cell left out\n",
                                  counted(stack.frames.size(), "frame"), counted(beads, "bead"),
@@ -176,7 +180,7 @@ void run(TrackOptions& o, const Common& common) {
         stack.wrong_radius);
   text += describe(stack);
   if (!o.truth.empty()) {
-    const Score s = score_against(o, stack, range);
+    const imaging::Score s = score_against(o, stack, range);
     document["truth"] = {{"recall", s.recall()},
                          {"precision", s.precision()},
                          {"rms_px", s.rms},

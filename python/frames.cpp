@@ -12,7 +12,7 @@ namespace twincell::python {
 namespace {
 
 /// Pictures that a Python iterator gives.
-class IteratedFrames : public FrameSource {
+class IteratedFrames : public imaging::FrameSource {
  public:
   IteratedFrames(const py::object& pictures, std::size_t announced)
       : pictures_(py::reinterpret_steal<py::object>(PyObject_GetIter(pictures.ptr()))),
@@ -52,8 +52,8 @@ class IteratedFrames : public FrameSource {
   cv::Size size_;
 };
 
-py::dict info_of(const FrameSource& frames) {
-  const StackInfo info = frames.info();
+py::dict info_of(const imaging::FrameSource& frames) {
+  const imaging::StackInfo info = frames.info();
   py::dict d;
   d["format"] = info.format;
   d["bits"] = info.bits;
@@ -104,11 +104,11 @@ cv::Mat picture_of_array(const py::handle& said) {
                                 py::str(array.dtype()).cast<std::string>()));
 }
 
-std::unique_ptr<FrameSource> source_of(const py::object& stack, std::string& name) {
+std::unique_ptr<imaging::FrameSource> source_of(const py::object& stack, std::string& name) {
   const py::object path_type = py::module_::import("os").attr("PathLike");
   if (py::isinstance<py::str>(stack) || py::isinstance(stack, path_type)) {
     name = stack.cast<std::filesystem::path>().string();
-    return open_frames(name);
+    return imaging::open_frames(name);
   }
   name.clear();
   // Frames of a whole stack are read again in C++.
@@ -125,12 +125,13 @@ std::unique_ptr<FrameSource> source_of(const py::object& stack, std::string& nam
 }
 
 void bind_frames(py::module_& module) {
-  py::class_<FrameSource>(module, "FrameSource", header_text("imaging/stack/frame_source.hpp", "FrameSource"))
-      .def(py::init([](const std::filesystem::path& stack) { return open_frames(stack); }), py::arg("stack"),
-           header_text("imaging/stack/open_frames.hpp", "open_frames"))
+  py::class_<imaging::FrameSource>(module, "FrameSource",
+                                   header_text("imaging/stack/frame_source.hpp", "FrameSource"))
+      .def(py::init([](const std::filesystem::path& stack) { return imaging::open_frames(stack); }),
+           py::arg("stack"), header_text("imaging/stack/open_frames.hpp", "open_frames"))
       .def(
           "read",
-          [](FrameSource& frames) -> py::object {
+          [](imaging::FrameSource& frames) -> py::object {
             cv::Mat frame;
             const bool read = [&] {
               const py::gil_scoped_release release;
@@ -139,12 +140,12 @@ void bind_frames(py::module_& module) {
             return read ? py::object(array_of_picture(frame)) : py::none();
           },
           header_text("imaging/stack/frame_source.hpp", "FrameSource::next"))
-      .def_property_readonly("announced", &FrameSource::announced,
+      .def_property_readonly("announced", &imaging::FrameSource::announced,
                              header_text("imaging/stack/frame_source.hpp", "FrameSource::announced"))
-      .def_property_readonly("current", &FrameSource::current,
+      .def_property_readonly("current", &imaging::FrameSource::current,
                              header_text("imaging/stack/frame_source.hpp", "FrameSource::current"))
       .def_property_readonly("info", &info_of, header_text("imaging/stack/frame_source.hpp", "StackInfo"))
-      .def_property_readonly("time_s", &FrameSource::time_s,
+      .def_property_readonly("time_s", &imaging::FrameSource::time_s,
                              header_text("imaging/stack/frame_source.hpp", "FrameSource::time_s"));
 }
 

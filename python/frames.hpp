@@ -18,6 +18,6 @@ cv::Mat picture_of_array(const py::handle& array);
 /// The stack of an argument: the name of a stack, one picture (2-D array), or anything that can be iterated
 /// over pictures. Call with the interpreter's lock; the source takes the lock itself where it needs it.
 /// \param name receives the name of the stack; empty for pictures in memory
-std::unique_ptr<FrameSource> source_of(const py::object& stack, std::string& name);
+std::unique_ptr<imaging::FrameSource> source_of(const py::object& stack, std::string& name);
 
 }  // namespace twincell::python

@@ -26,23 +26,23 @@ namespace {
 /// `twincell locate` writes them.
 struct BeadColumn {
   const char* name;
-  double (*of)(const Detection&);
+  double (*of)(const imaging::Detection&);
 };
 constexpr BeadColumn kColumns[] = {
-    {"y", [](const Detection& b) { return b.y; }},
-    {"x", [](const Detection& b) { return b.x; }},
-    {"mass", [](const Detection& b) { return b.mass; }},
-    {"size", [](const Detection& b) { return b.size; }},
-    {"ecc", [](const Detection& b) { return b.ecc; }},
-    {"signal", [](const Detection& b) { return b.signal; }},
-    {"raw_mass", [](const Detection& b) { return b.raw_mass; }},
-    {"ep", [](const Detection& b) { return position_error(b); }},
+    {"y", [](const imaging::Detection& b) { return b.y; }},
+    {"x", [](const imaging::Detection& b) { return b.x; }},
+    {"mass", [](const imaging::Detection& b) { return b.mass; }},
+    {"size", [](const imaging::Detection& b) { return b.size; }},
+    {"ecc", [](const imaging::Detection& b) { return b.ecc; }},
+    {"signal", [](const imaging::Detection& b) { return b.signal; }},
+    {"raw_mass", [](const imaging::Detection& b) { return b.raw_mass; }},
+    {"ep", [](const imaging::Detection& b) { return imaging::position_error(b); }},
     {"frame", nullptr},
-    {"radius", [](const Detection& b) { return b.radius; }},
-    {"sigma_x", [](const Detection& b) { return b.sigma_x; }},
-    {"sigma_y", [](const Detection& b) { return b.sigma_y; }},
-    {"sigma_radius", [](const Detection& b) { return b.sigma_radius; }},
-    {"score", [](const Detection& b) { return b.score; }},
+    {"radius", [](const imaging::Detection& b) { return b.radius; }},
+    {"sigma_x", [](const imaging::Detection& b) { return b.sigma_x; }},
+    {"sigma_y", [](const imaging::Detection& b) { return b.sigma_y; }},
+    {"sigma_radius", [](const imaging::Detection& b) { return b.sigma_radius; }},
+    {"score", [](const imaging::Detection& b) { return b.score; }},
     {"tracer", nullptr},
     {"edge", nullptr},
 };
@@ -57,16 +57,16 @@ struct Beads {
 struct FrameReport {
   std::size_t beads;
   double blur_px;
-  std::map<Verdict, std::size_t> dropped;
+  std::map<imaging::Verdict, std::size_t> dropped;
 };
 
-py::dict in_words(const std::map<Verdict, std::size_t>& counts) {
+py::dict in_words(const std::map<imaging::Verdict, std::size_t>& counts) {
   py::dict d;
-  for (const auto& [why, count] : counts) d[py::str(std::string(word_of(why)))] = count;
+  for (const auto& [why, count] : counts) d[py::str(std::string(imaging::word_of(why)))] = count;
   return d;
 }
 
-void set_diameters(LocatorOptions& options, const std::vector<double>& diameters) {
+void set_diameters(imaging::LocatorOptions& options, const std::vector<double>& diameters) {
   if (diameters.size() > 8)
     throw ConfigError({.file = {}, .key = "diameter"},
                       fmt::format("has {} values; there may be up to 8.", diameters.size()));
@@ -83,37 +83,39 @@ std::vector<double> numbers(const py::object& said) {
   return said.cast<std::vector<double>>();
 }
 
-std::unique_ptr<FrameSource> prepared_stack(const py::object& stack, const LocatingRequest& request,
-                                            const LocatorOptions& locator) {
+std::unique_ptr<imaging::FrameSource> prepared_stack(const py::object& stack,
+                                                     const imaging::LocatingRequest& request,
+                                                     const imaging::LocatorOptions& locator) {
   std::string name;
   auto frames = source_of(stack, name);
   if (request.flat == "stack" && name.empty())
     throw ConfigError({.file = {}, .key = "flat"},
                       "'stack' reads the stack twice, so it needs the name of a stack instead of arrays.");
   const py::gil_scoped_release release;
-  return prepare_frames(std::move(frames), name, request, locator);
+  return imaging::prepare_frames(std::move(frames), name, request, locator);
 }
 
 /// The options of beads and part of a stack, which `locate` and `track` share.
-LocatingRequest locating_request(const py::object& diameter, const std::string& finder, double min_score,
-                                 double min_explained, const std::string& refine, bool bright, bool dark,
-                                 const std::string& flat, const std::string& background,
-                                 const std::string& roi, const std::string& mask, const std::string& frames) {
+imaging::LocatingRequest locating_request(const py::object& diameter, const std::string& finder,
+                                          double min_score, double min_explained, const std::string& refine,
+                                          bool bright, bool dark, const std::string& flat,
+                                          const std::string& background, const std::string& roi,
+                                          const std::string& mask, const std::string& frames) {
   if (bright && dark)
     throw ConfigError({.file = {}, .key = "bright"},
                       "and dark exclude each other; give only one of the two.");
   if (!flat.empty() && !background.empty())
     throw ConfigError({.file = {}, .key = "flat"},
                       "and background exclude each other; give only one of the two.");
-  LocatingRequest request;
+  imaging::LocatingRequest request;
   request.locator.finder = finder;
   request.locator.find.min_score = min_score;
   request.locator.judge.min_score = min_explained;
   request.locator.refine.method = refine;
-  (void)refiner_named(refine);
+  (void)imaging::refiner_named(refine);
   request.locator.preprocess.bright = bright;
   request.diameters = numbers(diameter);
-  LocatorOptions checked;
+  imaging::LocatorOptions checked;
   set_diameters(checked, request.diameters);
   request.dark = dark;
   request.flat = flat;
@@ -124,27 +126,27 @@ LocatingRequest locating_request(const py::object& diameter, const std::string& 
   return request;
 }
 
-py::object locate_beads_of(const py::object& stack, const LocatingRequest& request, int threads,
+py::object locate_beads_of(const py::object& stack, const imaging::LocatingRequest& request, int threads,
                            const py::object& callback) {
-  const LocatorOptions given = locator_of(request);
-  const Region region = region_of(request);
-  const FrameRange range = frames_of(request);
+  const imaging::LocatorOptions given = imaging::locator_of(request);
+  const imaging::Region region = imaging::region_of(request);
+  const imaging::FrameRange range = imaging::frames_of(request);
   const int n_threads = threads_of(threads);
   const auto frames = prepared_stack(stack, request, given);
   Beads beads;
   std::vector<FrameReport> reports;
-  MotionInExposure motion;
-  std::map<Verdict, std::size_t> left_out;
-  const LocatorConfiguration found = unlocked(callback, [&](Progress& progress) {
-    RegionFrames seen(*frames, region);
-    FramesAhead ahead(seen);
-    LocatorConfiguration configuration = configure_locator(ahead, given);
-    locate_stack(
+  imaging::MotionInExposure motion;
+  std::map<imaging::Verdict, std::size_t> left_out;
+  const imaging::LocatorConfiguration found = unlocked(callback, [&](Progress& progress) {
+    imaging::RegionFrames seen(*frames, region);
+    imaging::FramesAhead ahead(seen);
+    imaging::LocatorConfiguration configuration = imaging::configure_locator(ahead, given);
+    imaging::locate_stack(
         ahead, configuration.locator, n_threads,
-        [&](std::int64_t index, const cv::Mat&, const Located& as_located) {
+        [&](std::int64_t index, const cv::Mat&, const imaging::Located& as_located) {
           const std::int64_t frame = range.number(index);
-          const Located located = in_whole_picture(as_located, region);
-          for (const Detection& b : located.beads) {
+          const imaging::Located located = imaging::in_whole_picture(as_located, region);
+          for (const imaging::Detection& b : located.beads) {
             for (std::size_t c = 0; c < std::size(kColumns); ++c)
               if (kColumns[c].of != nullptr) beads.columns[c].push_back(kColumns[c].of(b));
             beads.frame.push_back(frame);
@@ -153,14 +155,14 @@ py::object locate_beads_of(const py::object& stack, const LocatingRequest& reque
           }
           motion.add(located);
           FrameReport report{located.beads.size(), located.blur_px, {}};
-          for (const Detection& b : located.dropped) ++report.dropped[b.verdict];
+          for (const imaging::Detection& b : located.dropped) ++report.dropped[b.verdict];
           for (const auto& [why, count] : report.dropped) left_out[why] += count;
           reports.push_back(std::move(report));
         },
         progress);
     return configuration;
   });
-  check_flat(request.flat, found.locator.preprocess.bright);
+  imaging::check_flat(request.flat, found.locator.preprocess.bright);
 
   py::dict columns;
   for (std::size_t c = 0; c < std::size(kColumns); ++c) {
@@ -224,7 +226,7 @@ py::object track(const py::object& stack, TrackCall call, const py::object& call
   };
   calibration::TrackedFilm film = unlocked(callback, [&](Progress& progress) {
     return calibration::track_film(
-        [&](const LocatorOptions& locator) {
+        [&](const imaging::LocatorOptions& locator) {
           const py::gil_scoped_acquire lock;
           return prepared_stack(stack, call.film.locating, locator);
         },
@@ -232,17 +234,17 @@ py::object track(const py::object& stack, TrackCall call, const py::object& call
   });
   Provenance provenance = provenance_of("twincell.track (Python)", call.film.threads);
   provenance.config = film.cell.text;
-  if (!name.empty()) provenance.inputs.push_back(file_of_stack(name));
+  if (!name.empty()) provenance.inputs.push_back(imaging::file_of_stack(name));
   film.plan.info.provenance_json = provenance.to_json();
   std::shared_ptr<Trajectory> trajectory;
   if (call.output) {
     H5mdWriter writer(*call.output, film.plan.info);
-    write_trajectory(film.stack, film.plan, writer);
+    imaging::write_trajectory(film.stack, film.plan, writer);
     writer.finish();
     trajectory = std::make_shared<Trajectory>(*call.output);
   } else {
     SharedFrames memory(film.plan.info);
-    write_trajectory(film.stack, film.plan, memory);
+    imaging::write_trajectory(film.stack, film.plan, memory);
     trajectory = std::make_shared<Trajectory>(std::move(memory));
   }
   if (!film.stack.phases.warning.empty())
@@ -256,8 +258,8 @@ py::object track(const py::object& stack, TrackCall call, const py::object& call
 }  // namespace
 
 void bind_locating(py::module_& module) {
-  const LocatorOptions locator;
-  const LinkOptions link;
+  const imaging::LocatorOptions locator;
+  const imaging::LinkOptions link;
   module.def(
       "locate",
       [](const py::object& stack, const py::object& diameter, const std::string& finder, double min_score,

@@ -72,7 +72,7 @@ void translate(std::exception_ptr thrown) {
   } catch (const py::error_already_set&) {
     throw;
   } catch (const std::exception& e) {
-    const auto fault = opencv_error(e);
+    const auto fault = imaging::opencv_error(e);
     if (!fault) throw;
     if (fault->out_of_memory)
       PyErr_NoMemory();
@@ -141,7 +141,7 @@ PYBIND11_MODULE(_core, module) {
   using namespace twincell;
   using namespace twincell::python;
   h5::quiet();
-  quiet_opencv();
+  imaging::quiet_opencv();
   module.doc() = "The C++ side of twincell.";
   make_classes(module);
   py::register_exception_translator(&translate);

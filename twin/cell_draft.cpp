@@ -253,9 +253,9 @@ class Draft {
   }
 
   void doubts() {
-    ShakenCell numbers{.sigma_mm = a_.sigma_mm, .frequency_hz = a_.frequency_hz, .gamma = a_.gamma};
+    imaging::ShakenCell numbers{.sigma_mm = a_.sigma_mm, .frequency_hz = a_.frequency_hz, .gamma = a_.gamma};
     if (out_.gamma) numbers.gamma = out_.gamma->value;
-    for (const std::string& doubt : implausible_numbers(numbers)) out_.notes.push_back(doubt);
+    for (const std::string& doubt : imaging::implausible_numbers(numbers)) out_.notes.push_back(doubt);
   }
 
   const CellSurvey& s_;

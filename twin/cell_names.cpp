@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 /// The path of a stack without a trailing separator; "file.h5:/path" becomes "file.h5".
 fs::path bare(const fs::path& stack) {
-  const fs::path file = fs::absolute(file_of_stack(stack)).lexically_normal();
+  const fs::path file = fs::absolute(imaging::file_of_stack(stack)).lexically_normal();
   return file.has_filename() ? file : file.parent_path();
 }
 

@@ -21,10 +21,10 @@ constexpr int kPanel = 620, kBorder = 18, kLine = 24;
 /// Draws on the enlarged frame in coordinates of the ideal picture.
 class Canvas {
  public:
-  Canvas(cv::Mat3b& picture, int enlarge, std::optional<Lens> lens)
+  Canvas(cv::Mat3b& picture, int enlarge, std::optional<imaging::Lens> lens)
       : picture_(picture), enlarge_(enlarge), lens_(std::move(lens)) {}
   [[nodiscard]] cv::Point at(double x, double y) const {
-    PixelPoint p{x, y};
+    imaging::PixelPoint p{x, y};
     if (lens_) p = lens_->picture_from_ideal(p);
     return {cvRound(enlarge_ * (p.x_px + 0.5) - 0.5), cvRound(enlarge_ * (p.y_px + 0.5) - 0.5)};
   }
@@ -33,26 +33,26 @@ class Canvas {
     const int pieces = std::max(2, cvRound(cv::norm(b - a) * enlarge_ / 8)) | 1;
     for (int k = 0; k < pieces; k += dashed ? 2 : 1) {
       const cv::Point2d p = a + (b - a) * k / pieces, q = a + (b - a) * (k + 1) / pieces;
-      draw_line(picture_, at(p.x, p.y), at(q.x, q.y), colour, width);
+      imaging::draw_line(picture_, at(p.x, p.y), at(q.x, q.y), colour, width);
     }
   }
   void arrow(cv::Point2d a, cv::Point2d b, const cv::Scalar& colour, const std::string& name) {
     constexpr int kWidth = 2, kAside = 6;
-    draw_arrow(picture_, at(a.x, a.y), at(b.x, b.y), colour, kWidth);
-    draw_label(picture_, name, at(b.x, b.y) + cv::Point(kAside, kAside), colour);
+    imaging::draw_arrow(picture_, at(a.x, a.y), at(b.x, b.y), colour, kWidth);
+    imaging::draw_label(picture_, name, at(b.x, b.y) + cv::Point(kAside, kAside), colour);
   }
 
  private:
   cv::Mat3b& picture_;
   int enlarge_;
-  std::optional<Lens> lens_;
+  std::optional<imaging::Lens> lens_;
 };
 
 /// Walls, plate, origin, axes and scale bar on the frame.
 void draw_edges(cv::Mat3b& picture, int enlarge, const CellSurvey& s, const CellDraft& draft) {
-  std::optional<Lens> lens;
+  std::optional<imaging::Lens> lens;
   if (s.geometry && (s.geometry->rotation_deg != 0 || s.geometry->distortion != 0))
-    lens = Lens(s.size, s.geometry->rotation_deg, s.geometry->distortion);
+    lens = imaging::Lens(s.size, s.geometry->rotation_deg, s.geometry->distortion);
   Canvas canvas(picture, enlarge, lens);
   const double w = s.size.width, h = s.size.height;
   if (s.geometry) {
@@ -87,11 +87,11 @@ void draw_edges(cv::Mat3b& picture, int enlarge, const CellSurvey& s, const Cell
     constexpr int kMargin = 14, kRim = 7, kBar = 3;
     const int length = cvRound(n * *draft.pixels_per_sigma * enlarge);
     const cv::Point end(picture.cols - kMargin, kMargin), begin(end.x - length, end.y);
-    draw_line(picture, begin, end, cv::Scalar(255, 255, 255), kRim);
-    draw_line(picture, begin, end, kAxis, kBar);
+    imaging::draw_line(picture, begin, end, cv::Scalar(255, 255, 255), kRim);
+    imaging::draw_line(picture, begin, end, kAxis, kBar);
     const std::string text = fmt::format("{:g} bead diameter{}", n, n == 1 ? "" : "s");
-    const int wide = text_width(text);
-    draw_label(picture, text, {std::min(begin.x, end.x - wide), end.y + kLine - 4}, kAxis);
+    const int wide = imaging::text_width(text);
+    imaging::draw_label(picture, text, {std::min(begin.x, end.x - wide), end.y + kLine - 4}, kAxis);
   }
 }
 
@@ -114,7 +114,7 @@ std::vector<Entry> entries(const CellSurvey& s, const CellDraft& draft) {
     list.push_back(
         {fmt::format("{:.0f} beads, diameter {}", s.beads->count.value, with_error(s.beads->diameter, "px")),
          green});
-  if (std::any_of(s.discs.begin(), s.discs.end(), [](const Detection& d) { return d.tracer; }))
+  if (std::any_of(s.discs.begin(), s.discs.end(), [](const imaging::Detection& d) { return d.tracer; }))
     list.push_back({"  magenta: tracers, brighter inside", cv::Scalar(255, 0, 255)});
   if (s.has_walls())
     list.push_back(
@@ -150,25 +150,25 @@ void draw_motion(cv::Mat3b& picture, cv::Rect area, const CellSurvey& s) {
     return cv::Point(area.x + cvRound(frame / last * area.width),
                      area.y + cvRound(area.height * (0.5 - height / (2 * kHeadroom * d.amplitude))));
   };
-  draw_box(picture, area, kQuiet);
-  draw_line(picture, place(0, 0), place(last, 0), kQuiet);
+  imaging::draw_box(picture, area, kQuiet);
+  imaging::draw_line(picture, place(0, 0), place(last, 0), kQuiet);
   std::vector<cv::Point> curve;
   for (int k = 0; k <= area.width; ++k) {
     const double t = last * k / area.width;
     curve.push_back(place(t, d.amplitude * std::sin(d.omega * t + d.phi)));
   }
-  draw_curve(picture, curve, kPlate);
+  imaging::draw_curve(picture, curve, kPlate);
   for (std::size_t f = 0; f < d.frames.size() && d.frames[f].tick <= last; ++f)
     if (const double h = s.geometry->heights[f].height_px; std::isfinite(h))
-      draw_dot(
+      imaging::draw_dot(
           picture,
           place(d.frames[f].tick, std::clamp(h - d.z0, -kHeadroom * d.amplitude, kHeadroom * d.amplitude)), 3,
           kDot);
-  draw_text(picture, "height of the plate, px, against frame: seen (dots), fitted (line)",
-            {area.x, area.y - 8}, kText);
-  draw_text(picture, "0", {area.x - 2, area.y + area.height + kLine - 4}, kText);
-  draw_text(picture, fmt::format("{:.0f}", last),
-            {area.x + area.width - 2 * kBorder, area.y + area.height + kLine - 4}, kText);
+  imaging::draw_text(picture, "height of the plate, px, against frame: seen (dots), fitted (line)",
+                     {area.x, area.y - 8}, kText);
+  imaging::draw_text(picture, "0", {area.x - 2, area.y + area.height + kLine - 4}, kText);
+  imaging::draw_text(picture, fmt::format("{:.0f}", last),
+                     {area.x + area.width - 2 * kBorder, area.y + area.height + kLine - 4}, kText);
 }
 
 }  // namespace
@@ -176,8 +176,8 @@ void draw_motion(cv::Mat3b& picture, cv::Rect area, const CellSurvey& s) {
 cv::Mat3b draw_cell(const CellSurvey& s, const CellDraft& draft) {
   constexpr int kWidest = 1200, kMost = 3, kPlot = 200;
   const int enlarge = std::clamp(kWidest / std::max(1, s.size.width), 1, kMost);
-  cv::Mat3b frame = draw_overlay(s.picture, s.discs, enlarge);
-  flatten_noise(frame);
+  cv::Mat3b frame = imaging::draw_overlay(s.picture, s.discs, enlarge);
+  imaging::flatten_noise(frame);
   draw_edges(frame, enlarge, s, draft);
   const std::vector<Entry> list = entries(s, draft);
   const int text = kBorder + kLine * static_cast<int>(list.size());
@@ -186,7 +186,7 @@ cv::Mat3b draw_cell(const CellSurvey& s, const CellDraft& draft) {
   frame.copyTo(page(cv::Rect(0, 0, frame.cols, frame.rows)));
   const int x = frame.cols + kBorder;
   for (std::size_t i = 0; i < list.size(); ++i)
-    draw_text(page, list[i].text, {x, kBorder + kLine * static_cast<int>(i) + 10}, list[i].colour);
+    imaging::draw_text(page, list[i].text, {x, kBorder + kLine * static_cast<int>(i) + 10}, list[i].colour);
   if (s.drive) draw_motion(page, {x, text + 2 * kLine, kPanel - 2 * kBorder, kPlot}, s);
   return page;
 }

@@ -14,9 +14,9 @@ namespace twincell::twin {
 namespace {
 
 /// The frames of a stack up to the first one that cannot be read.
-class ReadableFrames : public FrameSource {
+class ReadableFrames : public imaging::FrameSource {
  public:
-  explicit ReadableFrames(const std::filesystem::path& stack) : all_(open_frames(stack)) {}
+  explicit ReadableFrames(const std::filesystem::path& stack) : all_(imaging::open_frames(stack)) {}
   bool next(cv::Mat& frame) override {
     if (!unreadable_.empty()) return false;
     try {
@@ -31,13 +31,13 @@ class ReadableFrames : public FrameSource {
   }
   [[nodiscard]] std::size_t announced() const override { return all_->announced(); }
   [[nodiscard]] std::string current() const override { return all_->current(); }
-  [[nodiscard]] StackInfo info() const override { return all_->info(); }
+  [[nodiscard]] imaging::StackInfo info() const override { return all_->info(); }
   [[nodiscard]] std::optional<double> time_s() const override { return all_->time_s(); }
   [[nodiscard]] const std::string& unreadable() const { return unreadable_; }
   [[nodiscard]] std::size_t read() const { return read_; }
 
  private:
-  std::unique_ptr<FrameSource> all_;
+  std::unique_ptr<imaging::FrameSource> all_;
   std::string unreadable_;
   std::size_t read_ = 0;
 };
@@ -46,24 +46,24 @@ class ReadableFrames : public FrameSource {
 void survey_beads(CellSurvey& s, const SurveyOptions& options, const ProgressOf& progress) {
   constexpr int kFrames = 12;
   const char* remedy = "give the bead diameter in px with --diameter";
-  LocatorOptions given;
+  imaging::LocatorOptions given;
   given.diameter_px = options.diameter_px;
   given.polarity_known = false;
-  LocatorOptions found;
+  imaging::LocatorOptions found;
   {
     ReadableFrames frames(s.stack);
-    FramesAhead ahead(frames);
+    imaging::FramesAhead ahead(frames);
     const auto bar = progress("bead size");
     bar->update(0, 1);
     if (const cv::Mat* first = ahead.look(0)) s.picture = first->clone();
     s.size = s.picture.size();
     s.info = frames.info();
     try {
-      const LocatorConfiguration c = configure_locator(ahead, given);
+      const imaging::LocatorConfiguration c = imaging::configure_locator(ahead, given);
       found = c.locator;
       s.frame = static_cast<std::size_t>(c.frame);
       s.picture = ahead.look(s.frame)->clone();
-      s.discs = locate(s.picture, found).beads;
+      s.discs = imaging::locate(s.picture, found).beads;
     } catch (const InputError&) {
       s.missing.push_back({"the bead diameter", "no round beads stand out in the first frames", remedy});
       return;
@@ -97,7 +97,7 @@ bool beads_below_plate(const CellSurvey& s) {
   if (s.frame >= heights.size() || !std::isfinite(heights[s.frame].height_px)) return false;
   const double row = s.geometry->plate_row - heights[s.frame].height_px;
   return std::any_of(s.discs.begin(), s.discs.end(),
-                     [&](const Detection& d) { return d.y + d.radius > row + 2 * d.radius / 3; });
+                     [&](const imaging::Detection& d) { return d.y + d.radius > row + 2 * d.radius / 3; });
 }
 
 /// The fitted motion, if the lowest edge moves as a plate does.

@@ -34,7 +34,7 @@ struct SurveyOptions {
 /// What a stack shows of its cell. Lengths in px.
 struct CellSurvey {
   std::filesystem::path stack;
-  StackInfo info;
+  imaging::StackInfo info;
   cv::Size size;
   std::size_t n_frames = 0;  ///< readable frames
   std::string unreadable;    ///< message of the frame at which reading ended; empty: all were read
@@ -45,11 +45,11 @@ struct CellSurvey {
   std::optional<calibration::CellGeometry> geometry;
   std::optional<calibration::DriveFit> drive;      ///< motion of the plate; times in frames
   std::optional<calibration::Estimate> plate_row;  ///< mean height of the plate, row of the ideal picture
-  std::optional<double> frame_rate_hz;  ///< of the stamps or of the stack; not the playback rate of a video
-  std::optional<double> playback_hz;    ///< frame rate that a video states
-  std::size_t frame = 0;                ///< number of the frame below
-  cv::Mat picture;                      ///< a frame that shows beads, else the first one
-  std::vector<Detection> discs;         ///< the beads in it
+  std::optional<double> frame_rate_hz;    ///< of the stamps or of the stack; not the playback rate of a video
+  std::optional<double> playback_hz;      ///< frame rate that a video states
+  std::size_t frame = 0;                  ///< number of the frame below
+  cv::Mat picture;                        ///< a frame that shows beads, else the first one
+  std::vector<imaging::Detection> discs;  ///< the beads in it
   std::vector<NotMeasured> missing;
   std::vector<std::string> notes;  ///< sentences of the stack and of the fits
 

@@ -137,9 +137,9 @@ void show_frames(const TrajectoryInfo& info, const fs::path& stack, analysis::Ru
   std::vector<std::int64_t> numbers;
   for (const analysis::Snapshot& moment : run.show.moments) numbers.push_back(moment.frame.step);
   try {
-    const auto frames = open_frames(stack);
+    const auto frames = imaging::open_frames(stack);
     constexpr int kLongest_px = 800;
-    run.show.pictures = picture_frames(*frames, numbers, kLongest_px, rotation_deg, distortion);
+    run.show.pictures = imaging::picture_frames(*frames, numbers, kLongest_px, rotation_deg, distortion);
   } catch (const InputError& e) {
     notes.push_back(fmt::format("{}: the report shows no camera frames of it: {}", run.name, e.what()));
   }
@@ -196,21 +196,21 @@ struct Scratch {
 
 /// A camera and the origin of its noise.
 struct LikeCamera {
-  CameraOptions options;
+  imaging::CameraOptions options;
   std::string origin;  ///< in words, after a comma; empty if the user chose the camera
 };
 
 /// Camera options like those of the experiment, as far as its frames show them: scale, illumination and
 /// noise.
 LikeCamera camera_of(const TrajectoryInfo& experiment, const fs::path& stack) {
-  CameraOptions camera;
+  imaging::CameraOptions camera;
   if (experiment.scale.pixels_per_sigma) camera.pixels_per_sigma = *experiment.scale.pixels_per_sigma;
   if (stack.empty()) return {camera, ", the camera's default noise"};
   const auto tracking = nlohmann::json::parse(experiment.tracking_json, nullptr, false);
   const nlohmann::json::json_pointer bright_key("/camera/bright");
   const bool bright = tracking.contains(bright_key) && tracking.at(bright_key) == true;
   try {
-    camera = with_noise_of(*open_frames(stack), camera.pixels_per_sigma, bright, camera);
+    camera = imaging::with_noise_of(*imaging::open_frames(stack), camera.pixels_per_sigma, bright, camera);
   } catch (const InputError&) {  // show_frames() has already reported the missing frames
     return {camera, ", the camera's default noise"};
   }
@@ -225,7 +225,7 @@ analysis::Checks::Filmed film(const analysis::Run& experiment, analysis::Run& si
                               const TrajectorySource& trajectory, const TrajectoryInfo& of_experiment,
                               const fs::path& stack, const ComparingOptions& options, Progress& progress) {
   const LikeCamera like = options.camera ? LikeCamera{*options.camera, ""} : camera_of(of_experiment, stack);
-  const CameraOptions& camera = like.options;
+  const imaging::CameraOptions& camera = like.options;
   std::size_t frames = experiment.n_frames;
   if (experiment.phases_per_cycle > 0 && simulation.phases_per_cycle > 0)
     frames = frames * static_cast<std::size_t>(simulation.phases_per_cycle) /

@@ -27,7 +27,7 @@ struct ComparingOptions {
   bool film = true;         ///< run a virtual experiment for one simulation of each match
   /// Camera of the virtual experiment; absent: the defaults at the scale of the experiment, with the noise of
   /// its frames if they still exist.
-  std::optional<CameraOptions> camera;
+  std::optional<imaging::CameraOptions> camera;
   std::filesystem::path scratch = {};  ///< folder of the film; empty: the folder for temporary files
   int threads = 1;
 };

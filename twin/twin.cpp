@@ -31,7 +31,7 @@ constexpr double kLargestShift = 0.01;
 /// First line of a generated scene, which allows a later run to replace the file.
 const char* const kSceneHead = "# The scene of a filmed cell, by twincell match.\n";
 
-void require_known(const CellDescription& cell, const fs::path& file) {
+void require_known(const imaging::CellDescription& cell, const fs::path& file) {
   const auto need = [&](bool known, const char* key, const char* why) {
     if (!known)
       throw ConfigError({.file = file.string(), .key = key},
@@ -41,7 +41,7 @@ void require_known(const CellDescription& cell, const fs::path& file) {
   need(cell.width.has_value(), "cell.width", "to place the side walls");
 }
 
-const char* word_of_sides(const CellDescription& cell, const fs::path& file) {
+const char* word_of_sides(const imaging::CellDescription& cell, const fs::path& file) {
   if (cell.sides == Boundary::periodic) return "periodic";
   if (cell.sides == Boundary::wall) return "walls";
   throw ConfigError({.file = file.string(), .key = "cell.sides"},
@@ -94,18 +94,18 @@ void simulate(const sim::Scene& scene, const fs::path& output, const TwinProvena
 
 /// The cell of the film with everything that a twin needs.
 struct FilmedCell {
-  CellDescription cell;
+  imaging::CellDescription cell;
   std::string drive;  ///< the drive as measured on the plate, in a sentence; empty if the cell states it
 };
 
 /// Reads the cell and measures its drive on the plate if the cell states none.
 FilmedCell read_filmed_cell(const TwinOptions& options, const ProgressOf& progress) {
-  FilmedCell filmed{.cell = read_cell(options.cell_file), .drive = {}};
+  FilmedCell filmed{.cell = imaging::read_cell(options.cell_file), .drive = {}};
   if (options.phase_lock) filmed.cell.phase_lock = *options.phase_lock;
   require_known(filmed.cell, options.cell_file);
   (void)word_of_sides(filmed.cell, options.cell_file);
   // Phases from the bed or a list need no lock to the drive.
-  const bool locked = options.phases.method == PhaseMethod::fixed;
+  const bool locked = options.phases.method == imaging::PhaseMethod::fixed;
   if (calibration::lacks_drive(filmed.cell, locked)) {
     const auto bar = progress("the plate's edge");
     filmed.drive = calibration::complete_drive(filmed.cell, locked, options.cell_file, options.stack,
@@ -116,7 +116,7 @@ FilmedCell read_filmed_cell(const TwinOptions& options, const ProgressOf& progre
 
 /// Checks the twin's scene before the stack is read. Where the stack determines the phases, their number is
 /// not known yet; any number serves.
-void check_scene(CellDescription& cell, const std::function<void()>& read_scene) {
+void check_scene(imaging::CellDescription& cell, const std::function<void()>& read_scene) {
   constexpr int kSomePhases = 20;
   const int stated = cell.phase_lock.frames_per_cycle;
   if (!cell.phase_lock.locked()) cell.phase_lock.frames_per_cycle = kSomePhases;
@@ -141,14 +141,15 @@ calibration::DriveCheck check_plate(const FilmedCell& filmed, const TwinOptions&
                                     const ProgressOf& progress) {
   if (!checks_drive(filmed, options)) return {.not_comparable = "the stated drive is trusted"};
   const auto bar = progress("the plate's edge");
-  calibration::DriveCheck check = calibration::check_by_plate(
-      filmed.cell, options.stack, options.threads, *bar, options.phases.method == PhaseMethod::fixed);
+  calibration::DriveCheck check =
+      calibration::check_by_plate(filmed.cell, options.stack, options.threads, *bar,
+                                  options.phases.method == imaging::PhaseMethod::fixed);
   require_agreement(check, options);
   return check;
 }
 
-LocatorOptions locator_for(const CellDescription& cell, const TwinOptions& options) {
-  LocatorOptions locator = options.locator;
+imaging::LocatorOptions locator_for(const imaging::CellDescription& cell, const TwinOptions& options) {
+  imaging::LocatorOptions locator = options.locator;
   locator.preprocess.bright |= cell.bright;
   if (locator.diameter_px <= 0) locator.diameter_px = cell.pixels_per_sigma.value_or(0);
   return locator;
@@ -156,29 +157,29 @@ LocatorOptions locator_for(const CellDescription& cell, const TwinOptions& optio
 
 /// Tracks the film into `output`. If the plate showed no drive, the bed checks the stated one before the
 /// trajectory is kept. Completes the frames per cycle of the cell, and scale and phases of the twin.
-void track_experiment(FrameSource& frames, FilmedCell& filmed, calibration::DriveCheck check,
+void track_experiment(imaging::FrameSource& frames, FilmedCell& filmed, calibration::DriveCheck check,
                       const TwinOptions& options, const TwinProvenance& provenance,
                       const ProgressOf& progress, Twin& twin) {
-  CellDescription& cell = filmed.cell;
+  imaging::CellDescription& cell = filmed.cell;
   const auto bar = progress("tracking");
-  PhaseSource phases = options.phases;
+  imaging::PhaseSource phases = options.phases;
   phases.trusted = options.trust_stated_drive;
-  const TrackedStack stack =
-      track_stack(frames, locator_for(cell, options), options.link, cell, options.threads, *bar, phases,
-                  twin.experiment.parent_path(), options.region);
+  const imaging::TrackedStack stack =
+      imaging::track_stack(frames, locator_for(cell, options), options.link, cell, options.threads, *bar,
+                           phases, twin.experiment.parent_path(), options.region);
   cell.phase_lock.frames_per_cycle = stack.phases.frames_per_cycle;
   twin.phases = stack.phases;
-  TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
+  imaging::TrackPlan plan = imaging::plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
   if (checks_drive(filmed, options) && check.by.empty()) {
     calibration::BedSteps bed(plan.info);
-    write_trajectory(stack, plan, bed);
+    imaging::write_trajectory(stack, plan, bed);
     check = calibration::check_by_bed(bed, plan.info, check.frame_rate_hz);
     require_agreement(check, options);
   }
   if (filmed.drive.empty()) calibration::record(check, plan.info);
   plan.info.provenance_json = provenance.of_experiment(cell);
   H5mdWriter writer(twin.experiment, plan.info);
-  write_trajectory(stack, plan, writer);
+  imaging::write_trajectory(stack, plan, writer);
   writer.finish();
   twin.pixels_per_sigma = plan.pixel_frame.pixels_per_sigma;
 }
@@ -205,8 +206,9 @@ std::vector<fs::path> simulate_twins(const std::string& scene, const Twin& twin,
 
 }  // namespace
 
-std::string twin_scene(const std::string& base, const std::string& base_name, const CellDescription& cell,
-                       const fs::path& experiment, std::size_t frame, std::int64_t cycles) {
+std::string twin_scene(const std::string& base, const std::string& base_name,
+                       const imaging::CellDescription& cell, const fs::path& experiment, std::size_t frame,
+                       std::int64_t cycles) {
   const std::string tilt =
       cell.side_tilt && cell.sides == Boundary::wall
           ? fmt::format("side_tilt = [{:.17g}, {:.17g}]\n", (*cell.side_tilt)[0], (*cell.side_tilt)[1])
@@ -262,7 +264,7 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
     (void)sim::read_scene_text(scene_text(0, 1), twin.scene.string(), options.assignments, folder);
   });
   const calibration::DriveCheck check = check_plate(filmed, options, progress);
-  const auto frames = options.open_stack ? options.open_stack() : open_frames(options.stack);
+  const auto frames = options.open_stack ? options.open_stack() : imaging::open_frames(options.stack);
   claim_shared_folder(folder, twin_folder());
 
   // Experiment, scene, simulations.

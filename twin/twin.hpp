@@ -31,20 +31,20 @@ struct TwinOptions {
   /// Number of simulations. The first starts exactly from the measured positions. In each of the others every
   /// bead is shifted at random, with the simulation's own seed, by the uncertainty of the measured positions.
   int twins = 3;
-  LocatorOptions locator;  ///< complete but for what configure_locator finds
-  Region region;           ///< part of the picture that is searched
+  imaging::LocatorOptions locator;  ///< complete but for what configure_locator finds
+  imaging::Region region;           ///< part of the picture that is searched
   /// Opens the stack to be tracked; empty: the whole stack, as it is.
-  std::function<std::unique_ptr<FrameSource>()> open_stack;
-  LinkOptions link;
+  std::function<std::unique_ptr<imaging::FrameSource>()> open_stack;
+  imaging::LinkOptions link;
   int threads = 1;
-  bool trust_stated_drive = false;      ///< do not check the stated drive and phase lock against the frames
-  PhaseSource phases;                   ///< source of the phases, if not the cell's frames per cycle
-  std::optional<PhaseLock> phase_lock;  ///< replaces that of the cell
+  bool trust_stated_drive = false;  ///< do not check the stated drive and phase lock against the frames
+  imaging::PhaseSource phases;      ///< source of the phases, if not the cell's frames per cycle
+  std::optional<imaging::PhaseLock> phase_lock;  ///< replaces that of the cell
 };
 
 /// Provenance texts of the files, which the command-line program supplies.
 struct TwinProvenance {
-  std::function<std::string(const CellDescription&)> of_experiment;
+  std::function<std::string(const imaging::CellDescription&)> of_experiment;
   std::function<std::string(const sim::Scene&, const std::vector<sim::Bead>&)> of_simulation;
 };
 
@@ -62,15 +62,16 @@ struct Twin {
   std::size_t beads = 0;        ///< beads in that frame
   std::int64_t cycles = 0;      ///< cycles of the simulations
   std::string drive;            ///< measured drive in a sentence; empty if the cell states the drive
-  PhaseTable phases;            ///< of the stack
+  imaging::PhaseTable phases;   ///< of the stack
 };
 
 /// Scene of the twin as TOML: `base` (text of a scene, or empty) with width, sides, drive and scale of the
 /// cell. It starts from frame `frame` of `experiment` and lasts `cycles` cycles with the cell's number of
 /// phases. \throws ConfigError for open sides, or a scale that differs from that of the cell \pre the cell
 /// states width and drive
-std::string twin_scene(const std::string& base, const std::string& base_name, const CellDescription& cell,
-                       const std::filesystem::path& experiment, std::size_t frame, std::int64_t cycles);
+std::string twin_scene(const std::string& base, const std::string& base_name,
+                       const imaging::CellDescription& cell, const std::filesystem::path& experiment,
+                       std::size_t frame, std::int64_t cycles);
 
 /// Writes experiment.h5, scene.toml and simulation-1.h5 … into `folder`, which is created if needed. Drive
 /// and phases that the cell does not state are measured on the plate (plate_drive.hpp).

@@ -16,7 +16,8 @@ namespace {
 
 /// Adds the pictures of the snapshots that were filmed, and the camera.
 void add_pictures(const TrajectorySource& filmed, const std::filesystem::path& frames,
-                  const CellDescription& cell, const TrackedStack& stack, analysis::Show& show) {
+                  const imaging::CellDescription& cell, const imaging::TrackedStack& stack,
+                  analysis::Show& show) {
   std::map<std::int64_t, std::int64_t> number_of_step;
   Frame frame;
   for (std::size_t f = 0; f < filmed.n_frames(); ++f) {
@@ -30,8 +31,8 @@ void add_pictures(const TrajectorySource& filmed, const std::filesystem::path& f
       numbers.push_back(found->second);
       moments.push_back(m);
     }
-  const auto source = open_frames(frames);
-  const auto pictures = picture_frames(*source, numbers);
+  const auto source = imaging::open_frames(frames);
+  const auto pictures = imaging::picture_frames(*source, numbers);
   show.pictures.assign(show.moments.size(), {});
   for (std::size_t i = 0; i < moments.size(); ++i) show.pictures[moments[i]] = pictures[i];
   const double s = *cell.pixels_per_sigma;
@@ -45,30 +46,30 @@ void add_pictures(const TrajectorySource& filmed, const std::filesystem::path& f
 
 }  // namespace
 
-void film_and_track(const TrajectorySource& simulation, const CameraOptions& camera,
+void film_and_track(const TrajectorySource& simulation, const imaging::CameraOptions& camera,
                     const std::filesystem::path& tracked, int threads, analysis::Show& show,
                     Progress& progress) {
   std::filesystem::path place = tracked;
   place += ".frames";
   const AtomicPath film(place, Product::whole_folder("a film"));  // not committed, so removed at the end
   const std::filesystem::path frames = film.part() / "frames";
-  CameraOptions whole = camera;
+  imaging::CameraOptions whole = camera;
   whole.drop = whole.doubled = 0;  // the phases of the film follow from the frame numbers
-  render(simulation, whole, RenderJob{.folder = frames, .threads = threads}, progress);
+  imaging::render(simulation, whole, imaging::RenderJob{.folder = frames, .threads = threads}, progress);
 
-  const CellDescription cell = read_cell(frames / "CELL.toml");
-  LocatorOptions locator;
+  const imaging::CellDescription cell = imaging::read_cell(frames / "CELL.toml");
+  imaging::LocatorOptions locator;
   locator.diameter_px = *cell.pixels_per_sigma;
   locator.preprocess.bright = cell.bright;
-  const auto source = open_frames(frames);
-  const TrackedStack stack =
-      track_stack(*source, locator, {}, cell, threads, progress, {.trusted = true}, film.part());
-  TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
+  const auto source = imaging::open_frames(frames);
+  const imaging::TrackedStack stack =
+      imaging::track_stack(*source, locator, {}, cell, threads, progress, {.trusted = true}, film.part());
+  imaging::TrackPlan plan = imaging::plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
   // If the simulation marks no tracers, the film has no darker beads; the analysis then chooses the tracers
   // of both by the same rule.
   if (simulation.info().tracer.empty()) plan.info.tracer.clear();
   H5mdWriter writer(tracked, plan.info);
-  write_trajectory(stack, plan, writer);
+  imaging::write_trajectory(stack, plan, writer);
   writer.finish();
   add_pictures(simulation, frames, cell, stack, show);
 }

@@ -34,7 +34,7 @@ class Beginning : public TrajectorySource {
 /// \param show its snapshots that are in the film receive their pictures and the camera (frame.step
 /// identifies the frames)
 /// \throws ConfigError, RunError as render(), InputError as track_stack()
-void film_and_track(const TrajectorySource& simulation, const CameraOptions& camera,
+void film_and_track(const TrajectorySource& simulation, const imaging::CameraOptions& camera,
                     const std::filesystem::path& tracked, int threads, analysis::Show& show,
                     Progress& progress = Progress::none());
 

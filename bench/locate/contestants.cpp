@@ -12,11 +12,13 @@ namespace twincell::bench {
 namespace {
 
 // The only function here that calls this library's locator.
-std::vector<cv::Point2d> ours(const cv::Mat1b& frame, LocatorOptions options, const rendered::Case& of) {
+std::vector<cv::Point2d> ours(const cv::Mat1b& frame, imaging::LocatorOptions options,
+                              const imaging::rendered::Case& of) {
   options.diameter_px = of.diameter;
   options.other_diameters_px = of.other_diameters;
   std::vector<cv::Point2d> centres;
-  for (const Detection& bead : locate(frame, options).beads) centres.emplace_back(bead.x, bead.y);
+  for (const imaging::Detection& bead : imaging::locate(frame, options).beads)
+    centres.emplace_back(bead.x, bead.y);
   return centres;
 }
 
@@ -33,7 +35,7 @@ void refine_by(Options& options, const std::string& method) {
 
 }  // namespace
 
-std::vector<cv::Point2d> opencv_hough(const cv::Mat1b& frame, const rendered::Case& of,
+std::vector<cv::Point2d> opencv_hough(const cv::Mat1b& frame, const imaging::rendered::Case& of,
                                       const HoughSettings& s) {
   cv::Mat picture = frame;
   if (s.smooth > 0) cv::GaussianBlur(frame, picture = cv::Mat(), {}, s.smooth);
@@ -73,18 +75,19 @@ std::vector<std::pair<std::string, HoughSettings>> hough_grid() {
 std::vector<Contestant> contestants() {
   std::vector<Contestant> all;
   std::vector<std::string> methods{""};
-  if (kNamesRefinements<RefineOptions>) methods = {"exact", "fast"};
-  for (const std::string& finder : finder_names())
+  if (kNamesRefinements<imaging::RefineOptions>) methods = {"exact", "fast"};
+  for (const std::string& finder : imaging::finder_names())
     for (const std::string& method : methods) {
-      LocatorOptions options;
+      imaging::LocatorOptions options;
       options.finder = finder;
       refine_by(options.refine, method);
-      all.push_back(
-          {fmt::format("twincell {}{}{}", finder, method.empty() ? "" : " ", method),
-           [options](const cv::Mat1b& frame, const rendered::Case& of) { return ours(frame, options, of); }});
+      all.push_back({fmt::format("twincell {}{}{}", finder, method.empty() ? "" : " ", method),
+                     [options](const cv::Mat1b& frame, const imaging::rendered::Case& of) {
+                       return ours(frame, options, of);
+                     }});
     }
   auto hough = [&](const char* name, const HoughSettings& settings) {
-    all.push_back({name, [settings](const cv::Mat1b& frame, const rendered::Case& of) {
+    all.push_back({name, [settings](const cv::Mat1b& frame, const imaging::rendered::Case& of) {
                      return opencv_hough(frame, of, settings);
                    }});
   };

@@ -15,7 +15,7 @@ namespace twincell::bench {
 struct Contestant {
   std::string name;
   /// Finds the centres in an 8-bit frame of a case, given its nominal diameters.
-  std::function<std::vector<cv::Point2d>(const cv::Mat1b&, const rendered::Case&)> find;
+  std::function<std::vector<cv::Point2d>(const cv::Mat1b&, const imaging::rendered::Case&)> find;
 };
 
 std::vector<Contestant> contestants();
@@ -30,7 +30,7 @@ struct HoughSettings {
   double apart = 0.8;          ///< minDist, in units of the least diameter
   double radius_slack = 0.15;  ///< minRadius = least radius (1 - this), maxRadius = largest (1 + this)
 };
-std::vector<cv::Point2d> opencv_hough(const cv::Mat1b& frame, const rendered::Case& of,
+std::vector<cv::Point2d> opencv_hough(const cv::Mat1b& frame, const imaging::rendered::Case& of,
                                       const HoughSettings& settings);
 
 /// The grid on which OpenCV's settings are searched, by name.

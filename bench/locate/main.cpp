@@ -29,7 +29,7 @@
 #include "imaging/benchmark/detection_score.hpp"
 
 using namespace twincell::bench;
-using namespace twincell::rendered;
+using namespace twincell::imaging::rendered;
 namespace fs = std::filesystem;
 
 namespace {

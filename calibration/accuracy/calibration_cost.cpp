@@ -42,7 +42,7 @@ Frame frame_at(int f, const TrajectoryInfo& info) {
 }
 
 /// The first n pictures of a film.
-class Pictures : public FrameSource {
+class Pictures : public imaging::FrameSource {
  public:
   Pictures(const std::vector<cv::Mat>& all, int n) : all_(all), n_(static_cast<std::size_t>(n)) {}
   bool next(cv::Mat& frame) override {
@@ -61,7 +61,7 @@ class Pictures : public FrameSource {
 /// Heights of a bead that is dropped from 4 sigma onto a plate at rest; noise 0.005 sigma, 50 frames per t0.
 std::vector<BounceSample> bouncing_bead(int n) {
   constexpr double kDrop = 4, kStep = 0.02, kNoise = 0.005;
-  RandomStream noise(1, Chance::noise, n);
+  imaging::RandomStream noise(1, imaging::Chance::noise, n);
   std::vector<BounceSample> samples;
   double begin = 0, v = 0;
   for (int i = 0; i < n; ++i) {
@@ -78,8 +78,8 @@ std::vector<BounceSample> bouncing_bead(int n) {
 
 CalibrationCost measure_calibration(const std::vector<int>& frames, Progress& progress) {
   const TrajectoryInfo info = cell();
-  const CameraOptions options{.pixels_per_sigma = kScale, .max_height = kRows + 3};
-  const SyntheticCamera camera(options, info);
+  const imaging::CameraOptions options{.pixels_per_sigma = kScale, .max_height = kRows + 3};
+  const imaging::SyntheticCamera camera(options, info);
   std::vector<cv::Mat> film;
   for (int f = 0; f < frames.back(); ++f) {
     film.push_back(camera.expose(frame_at(f, info)));
@@ -102,13 +102,13 @@ CalibrationCost measure_calibration(const std::vector<int>& frames, Progress& pr
     time.fit_s = cpu_seconds() - start;
     start = cpu_seconds();
     Pictures again(film, n);
-    LocatorOptions locator;
+    imaging::LocatorOptions locator;
     locator.diameter_px = kScale;
     const SizeStatistics census = count_beads(locate_beads(again, locator, std::nullopt, 12, 1));
     time.beads_s = cpu_seconds() - start;
     cost.times.push_back(time);
 
-    const PixelFrame& map = camera.pixel_frame();
+    const imaging::PixelFrame& map = camera.pixel_frame();
     add("camera.pixels_per_sigma", "px", g.width_error_px() / kColumns, g.width_px() / kColumns - kScale);
     add("camera.origin_px", "px", g.fit.standard_error("x_left"), g.fit.value("x_left") - map.origin.x_px);
     add("camera.rotation_deg", "degrees", g.fit.standard_error("rotation"), g.rotation_deg);

@@ -124,7 +124,7 @@ T value_at(const T* p, int place) {
 /// Distance of a wall point from its line, divided by `error`. plate_row, from which the walls' heights
 /// count, is constant.
 struct WallResidual {
-  PixelPoint at;
+  imaging::PixelPoint at;
   double error, plate_row;
   bool left;
   Places places;
@@ -144,7 +144,7 @@ struct WallResidual {
 
 /// Rows of one frame's plate points relative to their mean, so that the plate's height cancels.
 struct PlateResidual {
-  std::vector<PixelPoint> at;
+  std::vector<imaging::PixelPoint> at;
   double error;
   Places places;
   cv::Size size;
@@ -171,24 +171,24 @@ ceres::CostFunction* cost_of(Functor* functor, std::size_t parameters, std::size
   return cost;
 }
 
-Along along_of(const PixelPoint& p, int side) {
+Along along_of(const imaging::PixelPoint& p, int side) {
   return side == 0 ? Along{p.y_px, p.x_px} : side == 1 ? Along{p.y_px, -p.x_px} : Along{p.x_px, -p.y_px};
 }
 
 /// Position of a wall in one picture row, averaged over `frames` frames.
 struct WallRow {
-  PixelPoint at;
+  imaging::PixelPoint at;
   double frames = 1;
   std::vector<std::size_t> seen = {};  // these frames; beads and plate hide a row at some phases
   double floor = 0;                    // mean row of the plate in these frames, ideal picture
 };
 
 /// One point per picture row: the mean over the frames of the points on the wall.
-std::vector<WallRow> rows_of_wall(const std::vector<std::vector<EdgePoint>>& frames, int side) {
+std::vector<WallRow> rows_of_wall(const std::vector<std::vector<imaging::EdgePoint>>& frames, int side) {
   constexpr double kSteepest = 0.25;
   std::vector<Along> all;
   for (const auto& frame : frames)
-    for (const EdgePoint& p : frame) all.push_back(along_of(p.at, side));
+    for (const imaging::EdgePoint& p : frame) all.push_back(along_of(p.at, side));
   const auto line = outermost_line(all, kSteepest, 0.05);
   std::vector<WallRow> rows;
   if (!line) return rows;
@@ -222,7 +222,7 @@ std::vector<WallRow> rows_of_wall(const std::vector<std::vector<EdgePoint>>& fra
   }
   std::map<int, WallRow> sums;
   for (std::size_t f = 0; f < frames.size(); ++f)
-    for (const EdgePoint& p : frames[f]) {
+    for (const imaging::EdgePoint& p : frames[f]) {
       if (std::abs(distance(along_of(p.at, side))) > window) continue;
       WallRow& row = sums.try_emplace(static_cast<int>(p.at.y_px), WallRow{.at = {0, p.at.y_px}, .frames = 0})
                          .first->second;
@@ -240,14 +240,15 @@ std::vector<WallRow> rows_of_wall(const std::vector<std::vector<EdgePoint>>& fra
 }
 
 /// Points of the plate's edge in one frame: those within `window` of the outermost line with the given slope.
-std::vector<PixelPoint> on_plate(const std::vector<EdgePoint>& frame, double slope, double window) {
+std::vector<imaging::PixelPoint> on_plate(const std::vector<imaging::EdgePoint>& frame, double slope,
+                                          double window) {
   std::vector<double> r;
-  for (const EdgePoint& p : frame) r.push_back(along_of(p.at, 2).v - slope * p.at.x_px);
+  for (const imaging::EdgePoint& p : frame) r.push_back(along_of(p.at, 2).v - slope * p.at.x_px);
   std::vector<double> sorted = r;
   std::sort(sorted.begin(), sorted.end());
   const auto [offset, support] = outermost(
       sorted, std::max<std::size_t>(3, static_cast<std::size_t>(0.03 * static_cast<double>(r.size()))));
-  std::vector<PixelPoint> points;
+  std::vector<imaging::PixelPoint> points;
   if (support == 0) return points;
   for (std::size_t i = 0; i < r.size(); ++i)
     if (std::abs(r[i] - offset) < window) points.push_back(frame[i].at);
@@ -255,10 +256,11 @@ std::vector<PixelPoint> on_plate(const std::vector<EdgePoint>& frame, double slo
 }
 
 /// Height of the plate in the ideal picture, with its standard error from the scatter of the points.
-PlateSighting sighting(const std::vector<PixelPoint>& points, double rotation_deg, double k1, cv::Size size) {
+PlateSighting sighting(const std::vector<imaging::PixelPoint>& points, double rotation_deg, double k1,
+                       cv::Size size) {
   PlateSighting s{.height_px = kNaN, .sigma_px = kNaN, .points = 0};
   std::vector<double> rows;
-  for (const PixelPoint& p : points) {
+  for (const imaging::PixelPoint& p : points) {
     double q[2];
     ideal(rotation_deg, k1, p.x_px, p.y_px, size, q);
     rows.push_back(-q[1]);
@@ -280,7 +282,7 @@ PlateSighting sighting(const std::vector<PixelPoint>& points, double rotation_de
 
 struct Chosen {
   std::vector<WallRow> left, right;
-  std::vector<std::vector<PixelPoint>> plate;  // [some frames]
+  std::vector<std::vector<imaging::PixelPoint>> plate;  // [some frames]
 };
 
 FitReport solve_geometry(const Chosen& c, const Places& places, std::vector<double>& p, cv::Size size,
@@ -337,7 +339,8 @@ double diameter_for_edges(const std::filesystem::path& stack, bool bright, doubl
   constexpr double kUsual_px = 15;
   if (known_px > 0) return known_px;
   cv::Mat first;
-  const double found = open_frames(stack)->next(first) ? estimate_diameter(first, {.bright = bright}) : 0;
+  const double found =
+      imaging::open_frames(stack)->next(first) ? imaging::estimate_diameter(first, {.bright = bright}) : 0;
   return found > 0 ? found : kUsual_px;
 }
 
@@ -346,11 +349,11 @@ std::optional<double> frame_rate_of(std::optional<double> stated, const StackEdg
   if (stated) return stated;
   const auto& t = edges.time_s;
   if (t.size() > 1 && t.back() > t.front()) return static_cast<double>(t.size() - 1) / (t.back() - t.front());
-  const StackInfo info = open_frames(stack)->info();
+  const imaging::StackInfo info = imaging::open_frames(stack)->info();
   return info.playback ? std::nullopt : info.frame_rate_hz;
 }
 
-StackEdges read_stack_edges(FrameSource& frames, bool bright, double diameter_px, int threads,
+StackEdges read_stack_edges(imaging::FrameSource& frames, bool bright, double diameter_px, int threads,
                             Progress& progress) {
   StackEdges out;
   const std::size_t stride = std::max<std::size_t>(1, frames.announced() / kWallFrames);
@@ -369,9 +372,9 @@ StackEdges read_stack_edges(FrameSource& frames, bool bright, double diameter_px
       else
         stamped = false;
     }
-    std::vector<CellEdges> found(batch.size());
+    std::vector<imaging::CellEdges> found(batch.size());
     in_parallel(batch.size(), threads,
-                [&](std::size_t i) { found[i] = find_cell_edges(batch[i], bright, diameter_px); });
+                [&](std::size_t i) { found[i] = imaging::find_cell_edges(batch[i], bright, diameter_px); });
     for (std::size_t i = 0; i < batch.size(); ++i, ++done) {
       out.size = batch[i].size();
       if (done % stride == 0) {
@@ -398,7 +401,7 @@ std::optional<double> plate_slope(const StackEdges& edges, std::size_t stride) {
   std::vector<double> slopes;
   for (std::size_t f = 0; f < edges.plate.size(); f += stride) {
     std::vector<Along> points;
-    for (const EdgePoint& p : edges.plate[f]) points.push_back(along_of(p.at, 2));
+    for (const imaging::EdgePoint& p : edges.plate[f]) points.push_back(along_of(p.at, 2));
     if (const auto line = outermost_line(points, kSteepestPlate, kShare)) slopes.push_back(line->slope);
   }
   if (slopes.empty()) return std::nullopt;
@@ -477,7 +480,7 @@ class GeometryFit {
     constexpr double kLargest_px = 0.25;
     return report_.standard_errors.empty() || report_.standard_error(name) < kLargest_px;
   }
-  [[nodiscard]] std::vector<PixelPoint> plate_points(std::size_t frame) const {
+  [[nodiscard]] std::vector<imaging::PixelPoint> plate_points(std::size_t frame) const {
     return on_plate(edges_.plate[frame], slope_, window_);
   }
   [[nodiscard]] double wall_residual(const WallRow& row, bool left) const {
@@ -486,7 +489,7 @@ class GeometryFit {
     WallResidual{row.at, 1, row.floor, left, places_, size_}(&values, &r);
     return r;
   }
-  [[nodiscard]] std::vector<double> plate_residuals(const std::vector<PixelPoint>& frame) const;
+  [[nodiscard]] std::vector<double> plate_residuals(const std::vector<imaging::PixelPoint>& frame) const;
 
   const StackEdges& edges_;
   cv::Size size_;
@@ -566,9 +569,9 @@ void GeometryFit::choose_parameters(bool with_distortion) {
   if (with_distortion) places_.distortion = add("distortion", 0);
 }
 
-std::vector<double> GeometryFit::plate_residuals(const std::vector<PixelPoint>& frame) const {
+std::vector<double> GeometryFit::plate_residuals(const std::vector<imaging::PixelPoint>& frame) const {
   std::vector<double> r(frame.size()), q;
-  for (const PixelPoint& at : frame) {
+  for (const imaging::PixelPoint& at : frame) {
     double place[2];
     ideal(value_at(p_.data(), places_.rotation), value_at(p_.data(), places_.distortion), at.x_px, at.y_px,
           size_, place);

@@ -33,8 +33,8 @@ inline constexpr double kHeightModelError_px = 0.004;
 /// Edges of a whole stack: the plate in every frame, the walls in about forty frames.
 struct StackEdges {
   cv::Size size;
-  std::vector<std::vector<EdgePoint>> plate;        ///< [frames]
-  std::vector<std::vector<EdgePoint>> left, right;  ///< [frames 0, stride, 2 stride ...]
+  std::vector<std::vector<imaging::EdgePoint>> plate;        ///< [frames]
+  std::vector<std::vector<imaging::EdgePoint>> left, right;  ///< [frames 0, stride, 2 stride ...]
   std::size_t stride = 1;
   std::vector<double> time_s;  ///< camera time stamp of each frame; empty if the stack has none
   double blur_px = 0;          ///< median over frames
@@ -48,12 +48,12 @@ double diameter_for_edges(const std::filesystem::path& stack, bool bright, doubl
 std::optional<double> frame_rate_of(std::optional<double> stated, const StackEdges& edges,
                                     const std::filesystem::path& stack);
 /// Finds the edges in every frame; reads the stack once. \throws InputError as FrameSource
-StackEdges read_stack_edges(FrameSource& frames, bool bright, double diameter_px, int threads,
+StackEdges read_stack_edges(imaging::FrameSource& frames, bool bright, double diameter_px, int threads,
                             Progress& progress = Progress::none());
 
 /// Distance of an edge point from the fitted edge, for the residual map.
 struct EdgeResidual {
-  PixelPoint at;
+  imaging::PixelPoint at;
   double distance_px = 0;
 };
 

@@ -142,12 +142,12 @@ void add_gradient(SizeStatistics& c, const BeadFrames& beads, double middle, dou
 
 }  // namespace
 
-BeadFrames locate_beads(FrameSource& frames, const LocatorOptions& options, const std::optional<Lens>& lens,
-                        int most, int threads, Progress& progress) {
+BeadFrames locate_beads(imaging::FrameSource& frames, const imaging::LocatorOptions& options,
+                        const std::optional<imaging::Lens>& lens, int most, int threads, Progress& progress) {
   /// Every stride-th frame of another source.
-  class Thinned : public FrameSource {
+  class Thinned : public imaging::FrameSource {
    public:
-    Thinned(FrameSource& whole, std::size_t stride) : whole_(whole), stride_(stride) {}
+    Thinned(imaging::FrameSource& whole, std::size_t stride) : whole_(whole), stride_(stride) {}
     bool next(cv::Mat& frame) override {
       for (std::size_t skip = first_ ? 0 : stride_ - 1; skip > 0; --skip) {
         cv::Mat passed;
@@ -162,7 +162,7 @@ BeadFrames locate_beads(FrameSource& frames, const LocatorOptions& options, cons
     [[nodiscard]] std::string current() const override { return whole_.current(); }
 
    private:
-    FrameSource& whole_;
+    imaging::FrameSource& whole_;
     std::size_t stride_;
     bool first_ = true;
   };
@@ -171,18 +171,18 @@ BeadFrames locate_beads(FrameSource& frames, const LocatorOptions& options, cons
   BeadFrames out;
   out.mean_model_error = kDiameterModelError_px;
   out.model_scatter = kDiameterModelScatter_px;
-  FramesAhead ahead(some);
-  const LocatorOptions locator = configure_locator(ahead, options).locator;
-  locate_stack(
+  imaging::FramesAhead ahead(some);
+  const imaging::LocatorOptions locator = imaging::configure_locator(ahead, options).locator;
+  imaging::locate_stack(
       ahead, locator, threads,
-      [&](std::int64_t, const cv::Mat&, const Located& found) {
+      [&](std::int64_t, const cv::Mat&, const imaging::Located& found) {
         out.frames.emplace_back();
         out.counts.push_back(found.beads.size());
-        for (const Detection& b : found.beads) {
+        for (const imaging::Detection& b : found.beads) {
           if (b.edge) continue;
           SizedBead bead{b.x, b.y, b.radius, b.sigma_radius};
           if (lens) {
-            const PixelPoint at = lens->ideal_from_picture({b.x, b.y});
+            const imaging::PixelPoint at = lens->ideal_from_picture({b.x, b.y});
             bead = {at.x_px, at.y_px, b.radius / lens->magnification(at), b.sigma_radius};
           }
           out.frames.back().push_back(bead);

@@ -38,8 +38,9 @@ inline constexpr double kDiameterModelError_px = 0.002, kDiameterModelScatter_px
 /// Locates the beads in up to `most` frames, spread over the stack. Options that are not set are chosen from
 /// the first frames (configure_locator.hpp). \param lens if given, its distortion is removed from positions
 /// and radii
-BeadFrames locate_beads(FrameSource& frames, const LocatorOptions& options, const std::optional<Lens>& lens,
-                        int most, int threads, Progress& progress = Progress::none());
+BeadFrames locate_beads(imaging::FrameSource& frames, const imaging::LocatorOptions& options,
+                        const std::optional<imaging::Lens>& lens, int most, int threads,
+                        Progress& progress = Progress::none());
 /// The same from up to `most` frames of a trajectory, in sigma, with the trajectory's own radii. \throws
 /// InputError if it has no radii
 BeadFrames beads_of(const TrajectorySource& trajectory, int most);

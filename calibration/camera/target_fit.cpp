@@ -13,7 +13,7 @@ namespace {
 
 struct PointResidual {
   double a, b;  // spacings from the target's centre
-  PixelPoint seen;
+  imaging::PixelPoint seen;
   cv::Size size;
   template <class T>
   bool operator()(const T* p, T* residual) const {
@@ -33,14 +33,15 @@ struct PointResidual {
 
 }  // namespace
 
-TargetFit fit_target(const std::vector<PixelPoint>& points, const TargetPattern& pattern, cv::Size picture) {
+TargetFit fit_target(const std::vector<imaging::PixelPoint>& points, const imaging::TargetPattern& pattern,
+                     cv::Size picture) {
   const auto columns = static_cast<std::size_t>(pattern.columns),
              rows = static_cast<std::size_t>(pattern.rows);
   if (points.size() != columns * rows || columns < 3 || rows < 3)
     throw InputError(
         {.file = {}, .key = "target"},
         fmt::format("shows {} of {} x {} points; each side needs at least 3.", points.size(), columns, rows));
-  const PixelPoint &first = points.front(), &along = points[columns - 1], &last = points.back();
+  const imaging::PixelPoint &first = points.front(), &along = points[columns - 1], &last = points.back();
   const double dx = along.x_px - first.x_px, dy = along.y_px - first.y_px;
   double p[7] = {std::hypot(dx, dy) / static_cast<double>(columns - 1),
                  0.5 * (first.x_px + last.x_px),

@@ -25,6 +25,7 @@ struct TargetFit {
 
 /// Fits the model to the points of one picture. \param points as returned by find_target \throws InputError
 /// for other than columns x rows points
-TargetFit fit_target(const std::vector<PixelPoint>& points, const TargetPattern& pattern, cv::Size picture);
+TargetFit fit_target(const std::vector<imaging::PixelPoint>& points, const imaging::TargetPattern& pattern,
+                     cv::Size picture);
 
 }  // namespace twincell::calibration

@@ -369,8 +369,8 @@ Timed first_attempt(const std::vector<double>& heights, int frames_per_cycle) {
 /// fits again. The repair is kept where it follows the frames better.
 void repair_frames(const std::vector<double>& heights, int frames_per_cycle, Timed& now, DriveFit& lock) {
   const double period = 2 * kPi / now.attempt.fitted.report.values[3];
-  for (const int n : frames_per_cycle_to_try(frames_per_cycle, period)) {
-    const std::optional<SineSlips> slips = fit_sine_with_slips(heights, n);
+  for (const int n : imaging::frames_per_cycle_to_try(frames_per_cycle, period)) {
+    const std::optional<imaging::SineSlips> slips = imaging::fit_sine_with_slips(heights, n);
     if (!slips || slips->dropped + slips->doubled == 0) continue;
     std::vector<double> mended(slips->ticks.begin(), slips->ticks.end());
     Attempt b = attempt(samples_of(heights, mended), 2 * kPi / n);

@@ -29,7 +29,7 @@ bool is_whole(const DriveSpec& s) {
 }
 
 /// Pixels per sigma: as stated, else from the distance of the walls.
-double scale_of(const CellDescription& cell, const CellGeometry& geometry, const Where& where) {
+double scale_of(const imaging::CellDescription& cell, const CellGeometry& geometry, const Where& where) {
   if (cell.pixels_per_sigma) return *cell.pixels_per_sigma;
   if (cell.width && geometry.has_left && geometry.has_right) return geometry.width_px() / *cell.width;
   throw ConfigError(where,
@@ -40,7 +40,8 @@ double scale_of(const CellDescription& cell, const CellGeometry& geometry, const
 /// Plate edge and its motion. If the plate is outside the picture, the detection may return the lowest row of
 /// beads or the picture's border instead, so the edge is checked. \throws InputError if no edge moves as a
 /// plate does, or if the edge is more than half a bead from the stated position of the plate
-std::pair<CellGeometry, DriveFit> plate_in_picture(const CellDescription& cell, const StackEdges& edges) {
+std::pair<CellGeometry, DriveFit> plate_in_picture(const imaging::CellDescription& cell,
+                                                   const StackEdges& edges) {
   const CellGeometry geometry = fit_cell_geometry(edges);
   const DriveFit drive =
       fit_drive(geometry.heights_px(), {.frames_per_cycle = cell.phase_lock.frames_per_cycle,
@@ -59,15 +60,17 @@ std::pair<CellGeometry, DriveFit> plate_in_picture(const CellDescription& cell, 
 
 }  // namespace
 
-bool lacks_drive(const CellDescription& cell, bool phases) {
+bool lacks_drive(const imaging::CellDescription& cell, bool phases) {
   return !is_whole(cell.drive_spec) || (phases && !cell.phase_lock.locked());
 }
 
-std::string complete_drive(CellDescription& cell, bool phases, const std::filesystem::path& cell_file,
-                           const std::filesystem::path& stack, int threads, Progress& progress) {
+std::string complete_drive(imaging::CellDescription& cell, bool phases,
+                           const std::filesystem::path& cell_file, const std::filesystem::path& stack,
+                           int threads, Progress& progress) {
   const auto where = [&](const char* key) { return Where{.file = cell_file.string(), .key = key}; };
   const double diameter = diameter_for_edges(stack, cell.bright, cell.pixels_per_sigma.value_or(0));
-  const StackEdges edges = read_stack_edges(*open_frames(stack), cell.bright, diameter, threads, progress);
+  const StackEdges edges =
+      read_stack_edges(*imaging::open_frames(stack), cell.bright, diameter, threads, progress);
   const auto seen = [&] {
     try {
       return plate_in_picture(cell, edges);
@@ -115,10 +118,10 @@ std::string complete_drive(CellDescription& cell, bool phases, const std::filesy
 namespace {
 
 /// The first frames of a stack, at most `most`.
-class FirstFrames : public FrameSource {
+class FirstFrames : public imaging::FrameSource {
  public:
   FirstFrames(const std::filesystem::path& stack, std::size_t most)
-      : all_(open_frames(stack)), most_(most), left_(most) {}
+      : all_(imaging::open_frames(stack)), most_(most), left_(most) {}
   bool next(cv::Mat& frame) override {
     if (left_ == 0) return false;
     --left_;
@@ -126,11 +129,11 @@ class FirstFrames : public FrameSource {
   }
   [[nodiscard]] std::size_t announced() const override { return std::min(all_->announced(), most_); }
   [[nodiscard]] std::string current() const override { return all_->current(); }
-  [[nodiscard]] StackInfo info() const override { return all_->info(); }
+  [[nodiscard]] imaging::StackInfo info() const override { return all_->info(); }
   [[nodiscard]] std::optional<double> time_s() const override { return all_->time_s(); }
 
  private:
-  std::unique_ptr<FrameSource> all_;
+  std::unique_ptr<imaging::FrameSource> all_;
   std::size_t most_, left_;
 };
 
@@ -169,7 +172,7 @@ void compare_period(DriveCheck& check, const std::string& what, const DriveFit& 
 
 /// The stated frame rate and frames per cycle give a frequency by themselves, whatever the frames show. The
 /// playback rate of a video is not the camera's, so only a stated rate counts.
-void compare_frame_rate(DriveCheck& check, const CellDescription& cell, double stated) {
+void compare_frame_rate(DriveCheck& check, const imaging::CellDescription& cell, double stated) {
   const auto t0 = cell.scale.t0_s();
   if (!cell.frame_rate_hz || !t0 || !cell.phase_lock.locked() || !check.disagreement.empty()) return;
   const double omega = 2 * M_PI * *cell.frame_rate_hz * *t0 / cell.phase_lock.frames_per_cycle;
@@ -184,11 +187,11 @@ void compare_frame_rate(DriveCheck& check, const CellDescription& cell, double s
 /// period, so that a second one searches for the period and is kept if it describes the heights as well. It
 /// needs the stated position of the plate, because without the plate in the picture it would find a period in
 /// the noise of another edge.
-DriveFit motion_of_plate(const CellDescription& cell, const StackEdges& edges) {
+DriveFit motion_of_plate(const imaging::CellDescription& cell, const StackEdges& edges) {
   if (!cell.phase_lock.locked() || !cell.origin) return plate_in_picture(cell, edges).second;
-  CellDescription free = cell;
+  imaging::CellDescription free = cell;
   free.phase_lock = {};
-  const auto fitted = [&](const CellDescription& from) -> std::optional<DriveFit> {
+  const auto fitted = [&](const imaging::CellDescription& from) -> std::optional<DriveFit> {
     try {
       return plate_in_picture(from, edges).second;
     } catch (const InputError&) {
@@ -217,8 +220,8 @@ void record(const DriveCheck& check, TrajectoryInfo& info) {
   info.tracking_json = json_text(tracking);
 }
 
-DriveCheck check_by_plate(const CellDescription& cell, const std::filesystem::path& stack, int threads,
-                          Progress& progress, bool fixed_phases) {
+DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::filesystem::path& stack,
+                          int threads, Progress& progress, bool fixed_phases) {
   DriveCheck check;
   const auto drive = cell.drive();
   if (!drive || !cell.pixels_per_sigma) {

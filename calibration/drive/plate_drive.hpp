@@ -15,7 +15,7 @@ namespace twincell::calibration {
 
 /// Whether the cell description lacks the amplitude or frequency of the drive, or, if `phases` are wanted,
 /// the frames per cycle.
-bool lacks_drive(const CellDescription& cell, bool phases = true);
+bool lacks_drive(const imaging::CellDescription& cell, bool phases = true);
 
 /// Completes the drive of the cell from the plate's edge in every frame (cell_geometry.hpp, drive_fit.hpp). A
 /// comes from the plate's amplitude and the scale. omega comes from the frame rate and t0, unless the cell
@@ -24,8 +24,9 @@ bool lacks_drive(const CellDescription& cell, bool phases = true);
 /// \return the measured values as one sentence
 /// \throws ConfigError naming the key that is still missing and why it could not be measured; InputError if
 /// no moving plate is detected
-std::string complete_drive(CellDescription& cell, bool phases, const std::filesystem::path& cell_file,
-                           const std::filesystem::path& stack, int threads, Progress& progress);
+std::string complete_drive(imaging::CellDescription& cell, bool phases,
+                           const std::filesystem::path& cell_file, const std::filesystem::path& stack,
+                           int threads, Progress& progress);
 
 /// Result of comparing the stated drive with the film.
 struct DriveCheck {
@@ -47,8 +48,8 @@ void record(const DriveCheck& check, TrajectoryInfo& info);
 /// period is not compared. Also compares omega with the stated frame rate divided by the stated frames per
 /// cycle, with or without a plate in the picture \pre the cell states drive and scale, otherwise nothing is
 /// compared
-DriveCheck check_by_plate(const CellDescription& cell, const std::filesystem::path& stack, int threads,
-                          Progress& progress, bool fixed_phases = true);
+DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::filesystem::path& stack,
+                          int threads, Progress& progress, bool fixed_phases = true);
 
 /// Compares the stated drive with the lower surface of the bed while the bed rests on the plate
 /// (bed_drive.hpp), for films that do not show the plate. A difference of amplitude counts if it exceeds five

@@ -4,31 +4,31 @@
 
 namespace twincell::calibration {
 
-TrackedFilm track_film(const std::function<std::unique_ptr<FrameSource>(const LocatorOptions&)>& open,
-                       const std::filesystem::path& film, const FilmOptions& options,
-                       const std::function<std::unique_ptr<Progress>(const std::string& stage)>& progress,
-                       StageTimes* times) {
-  const TrackRequest& request = options.request;
-  CellDescription cell = resolve_cell(request);
-  PhaseSource source = phase_source(request.phase, cell, request.cell_file);
+TrackedFilm track_film(
+    const std::function<std::unique_ptr<imaging::FrameSource>(const imaging::LocatorOptions&)>& open,
+    const std::filesystem::path& film, const FilmOptions& options,
+    const std::function<std::unique_ptr<Progress>(const std::string& stage)>& progress, StageTimes* times) {
+  const imaging::TrackRequest& request = options.request;
+  imaging::CellDescription cell = imaging::resolve_cell(request);
+  imaging::PhaseSource source = imaging::phase_source(request.phase, cell, request.cell_file);
   source.trusted = options.trust_stated_drive;
   (void)cell.drive();  // refuse a contradictory drive before the work starts
-  cell.phase_lock = lock_of_chosen(cell.phase_lock, frames_of(options.locating));
-  const LocatorOptions locator =
-      locator_of(options.locating, cell.pixels_per_sigma,
-                 request.cell_file.empty() ? std::nullopt : std::optional<bool>(cell.bright));
-  const Region region = region_of(options.locating);
+  cell.phase_lock = imaging::lock_of_chosen(cell.phase_lock, imaging::frames_of(options.locating));
+  const imaging::LocatorOptions locator =
+      imaging::locator_of(options.locating, cell.pixels_per_sigma,
+                          request.cell_file.empty() ? std::nullopt : std::optional<bool>(cell.bright));
+  const imaging::Region region = imaging::region_of(options.locating);
   // Locate and link all frames.
   const auto frames = open(locator);
-  TrackedStack stack = [&] {
+  imaging::TrackedStack stack = [&] {
     const auto bar = progress("track");
-    return track_stack(*frames, locator, options.link, cell, options.threads, *bar, source, options.folder,
-                       region, times);
+    return imaging::track_stack(*frames, locator, options.link, cell, options.threads, *bar, source,
+                                options.folder, region, times);
   }();
-  check_flat(options.locating.flat, stack.locator.preprocess.bright);
-  TrackPlan plan = [&] {
+  imaging::check_flat(options.locating.flat, stack.locator.preprocess.bright);
+  imaging::TrackPlan plan = [&] {
     const Stage planning(times, "plan");
-    return plan_trajectory(stack, cell, stack.locator.diameter_px, options.shortest);
+    return imaging::plan_trajectory(stack, cell, stack.locator.diameter_px, options.shortest);
   }();
   // Check the stated drive against the motion of the plate, or of the bed if the plate is not visible.
   DriveCheck check{.not_comparable = "the stated drive is trusted"};
@@ -36,11 +36,12 @@ TrackedFilm track_film(const std::function<std::unique_ptr<FrameSource>(const Lo
     const Stage checking(times, "drive check");
     if (!film.empty()) {
       const auto edge = progress("the plate's edge");
-      check = check_by_plate(cell, film, options.threads, *edge, source.method == PhaseMethod::fixed);
+      check =
+          check_by_plate(cell, film, options.threads, *edge, source.method == imaging::PhaseMethod::fixed);
     }
     if (check.by.empty() && check.disagreement.empty() && cell.pixels_per_sigma) {
       BedSteps bed(plan.info);
-      write_trajectory(stack, plan, bed);
+      imaging::write_trajectory(stack, plan, bed);
       check = check_by_bed(bed, plan.info, check.frame_rate_hz);
     }
   }

@@ -20,9 +20,9 @@ namespace twincell::calibration {
 
 /// Options of track_film.
 struct FilmOptions {
-  TrackRequest request;
-  LocatingRequest locating;  ///< beads, and the part of the film that is searched
-  LinkOptions link;
+  imaging::TrackRequest request;
+  imaging::LocatingRequest locating;  ///< beads, and the part of the film that is searched
+  imaging::LinkOptions link;
   int shortest = 1;                 ///< frames of the shortest track that is written
   bool trust_stated_drive = false;  ///< do not check the stated drive and phase lock against the frames
   int threads = 1;
@@ -31,9 +31,9 @@ struct FilmOptions {
 
 /// A tracked film. Its trajectory is written by write_trajectory(stack, plan, sink).
 struct TrackedFilm {
-  CellDescription cell;
-  TrackedStack stack;
-  TrackPlan plan;
+  imaging::CellDescription cell;
+  imaging::TrackedStack stack;
+  imaging::TrackPlan plan;
   DriveCheck check;
 };
 
@@ -47,9 +47,10 @@ struct TrackedFilm {
 /// \param times receives the times of the stages of track_stack, and of "drive check" and "plan"; null: not
 /// timed
 /// \throws ConfigError, InputError as resolve_cell, phase_source, track_stack
-TrackedFilm track_film(const std::function<std::unique_ptr<FrameSource>(const LocatorOptions&)>& open,
-                       const std::filesystem::path& film, const FilmOptions& options,
-                       const std::function<std::unique_ptr<Progress>(const std::string& stage)>& progress,
-                       StageTimes* times = nullptr);
+TrackedFilm track_film(
+    const std::function<std::unique_ptr<imaging::FrameSource>(const imaging::LocatorOptions&)>& open,
+    const std::filesystem::path& film, const FilmOptions& options,
+    const std::function<std::unique_ptr<Progress>(const std::string& stage)>& progress,
+    StageTimes* times = nullptr);
 
 }  // namespace twincell::calibration

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace twincell::rendered {
+namespace twincell::imaging::rendered {
 
 namespace {
 
@@ -74,4 +74,4 @@ double BlurredDisc::by_radius(double r) const {
   return (1 - f) * by_radius_[i] + f * by_radius_[i + 1];
 }
 
-}  // namespace twincell::rendered
+}  // namespace twincell::imaging::rendered

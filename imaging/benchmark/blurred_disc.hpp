@@ -11,7 +11,7 @@
 
 #include <vector>
 
-namespace twincell::rendered {
+namespace twincell::imaging::rendered {
 
 /// P and its derivatives, tabulated for one radius R and one blur s. Lengths in px.
 class BlurredDisc {
@@ -29,4 +29,4 @@ class BlurredDisc {
   std::vector<double> value_, slope_, by_radius_;  // on a grid from first_ with spacing kStep
 };
 
-}  // namespace twincell::rendered
+}  // namespace twincell::imaging::rendered

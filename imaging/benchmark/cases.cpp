@@ -7,7 +7,7 @@
 
 #include "imaging/benchmark/packing.hpp"
 
-namespace twincell::rendered {
+namespace twincell::imaging::rendered {
 
 namespace {
 
@@ -222,4 +222,4 @@ const std::vector<Case>& cases() {
   return kCases;
 }
 
-}  // namespace twincell::rendered
+}  // namespace twincell::imaging::rendered

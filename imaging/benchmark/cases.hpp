@@ -8,7 +8,7 @@
 
 #include "imaging/benchmark/picture.hpp"
 
-namespace twincell::rendered {
+namespace twincell::imaging::rendered {
 
 /// One benchmark case: a kind of picture and the noise levels at which it is rendered.
 struct Case {
@@ -23,4 +23,4 @@ struct Case {
 /// All cases. To add one, add an entry to the list in cases.cpp.
 const std::vector<Case>& cases();
 
-}  // namespace twincell::rendered
+}  // namespace twincell::imaging::rendered

@@ -5,7 +5,7 @@
 #include <complex>
 #include <numbers>
 
-namespace twincell::rendered {
+namespace twincell::imaging::rendered {
 
 void Marks::add(const Picture& picture, const std::vector<cv::Point2d>& found,
                 const std::vector<double>& bound) {
@@ -80,4 +80,4 @@ Marks::Summary Marks::summary() const {
   return s;
 }
 
-}  // namespace twincell::rendered
+}  // namespace twincell::imaging::rendered

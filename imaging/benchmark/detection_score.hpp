@@ -8,7 +8,7 @@
 
 #include "imaging/benchmark/picture.hpp"
 
-namespace twincell::rendered {
+namespace twincell::imaging::rendered {
 
 /// Accumulates the scores of all frames of one case, noise level and method.
 class Marks {
@@ -46,4 +46,4 @@ class Marks {
   double bounds_ = 0;  // sum of the squared bounds
 };
 
-}  // namespace twincell::rendered
+}  // namespace twincell::imaging::rendered

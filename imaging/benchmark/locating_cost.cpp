@@ -14,7 +14,7 @@
 #include "imaging/benchmark/picture.hpp"
 #include "imaging/locate/locator.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -153,4 +153,4 @@ double bed_displacement_noise(double relative_rms, int tracers, int cycles, int 
   return relative_rms * std::sqrt((1 - 1.0 / phases) / (double(tracers) * cycles));
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -9,7 +9,7 @@
 
 #include "core/progress.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// A locator setting and the kind of picture it is applied to.
 struct LocateSetting {
@@ -71,4 +71,4 @@ std::optional<LocatePrecision> cheapest(const std::vector<LocatePrecision>& all,
 /// \param relative_rms per coordinate, bead diameters
 double bed_displacement_noise(double relative_rms, int tracers, int cycles, int phases);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

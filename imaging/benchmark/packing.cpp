@@ -7,7 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
-namespace twincell::rendered {
+namespace twincell::imaging::rendered {
 
 namespace {
 
@@ -160,4 +160,4 @@ std::vector<Disc> deposited(const std::vector<double>& radii, cv::Rect2d room, s
   return discs;
 }
 
-}  // namespace twincell::rendered
+}  // namespace twincell::imaging::rendered

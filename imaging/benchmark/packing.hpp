@@ -8,7 +8,7 @@
 
 #include "imaging/benchmark/picture.hpp"
 
-namespace twincell::rendered {
+namespace twincell::imaging::rendered {
 
 /// One disc per radius on a square grid over the whole rectangle, each disc displaced at random within the
 /// free space of its cell. Nearest neighbours are at least two px apart.
@@ -23,4 +23,4 @@ std::vector<Disc> hexagonal(std::size_t count, double radius, cv::Rect2d room, s
 /// exact, and discs do not overlap.
 std::vector<Disc> deposited(const std::vector<double>& radii, cv::Rect2d room, std::mt19937_64& random);
 
-}  // namespace twincell::rendered
+}  // namespace twincell::imaging::rendered

@@ -11,7 +11,7 @@
 
 #include "imaging/benchmark/blurred_disc.hpp"
 
-namespace twincell::rendered {
+namespace twincell::imaging::rendered {
 
 namespace {
 
@@ -221,4 +221,4 @@ std::vector<double> cramer_rao_bound(const cv::Mat1d& expected, const Picture& p
   return bound;
 }
 
-}  // namespace twincell::rendered
+}  // namespace twincell::imaging::rendered

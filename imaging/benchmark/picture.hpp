@@ -13,7 +13,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-namespace twincell::rendered {
+namespace twincell::imaging::rendered {
 
 /// Share of read noise in the variance of the back-light; the rest is shot noise.
 constexpr double kReadShare = 0.25;
@@ -51,4 +51,4 @@ cv::Mat1b expose(const cv::Mat1d& expected, const Picture& picture, double snr, 
 /// are taken as known.
 std::vector<double> cramer_rao_bound(const cv::Mat1d& expected, const Picture& picture, double snr);
 
-}  // namespace twincell::rendered
+}  // namespace twincell::imaging::rendered

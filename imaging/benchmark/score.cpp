@@ -13,7 +13,7 @@
 #include "core/table_text.hpp"
 #include "imaging/stack/frame_source.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace fs = std::filesystem;
 
@@ -190,4 +190,4 @@ std::vector<std::vector<TruthBead>> read_truth(const fs::path& path) {
   return frames;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

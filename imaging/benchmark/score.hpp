@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// A bead with known position.
 struct TruthBead {
@@ -73,4 +73,4 @@ class Scorer {
 /// \throws InputError naming file and line
 std::vector<std::vector<TruthBead>> read_truth(const std::filesystem::path& path);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -4,7 +4,7 @@
 
 #include "imaging/camera/options.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -40,4 +40,4 @@ const KeyTable& camera_keys() {
   return table;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

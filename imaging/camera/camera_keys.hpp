@@ -4,9 +4,9 @@
 
 #include "core/key_table.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// The options of camera_option_list(), and the seed.
 const KeyTable& camera_keys();
 
-}  // namespace twincell
+}  // namespace twincell::imaging

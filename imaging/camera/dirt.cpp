@@ -6,7 +6,7 @@
 
 #include "imaging/camera/random.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -50,4 +50,4 @@ cv::Mat1f glass(cv::Size size, const CameraOptions& o) {
   return light;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -4,7 +4,7 @@
 #include <array>
 #include <numbers>
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -68,4 +68,4 @@ DiscImage::DiscImage(double radius, double blur) {
   }
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

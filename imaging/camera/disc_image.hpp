@@ -11,7 +11,7 @@
 #include <cmath>
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// The tabulated image of a disc with one radius and one blur.
 class DiscImage {
@@ -43,4 +43,4 @@ class DiscImage {
   std::vector<Entry> table_;
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

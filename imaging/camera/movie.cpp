@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 #include "imaging/stack/opencv_errors.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -89,4 +89,4 @@ void Movie::commit() {
   place_.commit();
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

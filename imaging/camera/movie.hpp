@@ -8,7 +8,7 @@
 
 #include "core/atomic_file.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Writes .mp4 (H.264, or MPEG-4 if this build of OpenCV has no H.264) or .avi (Motion JPEG), 8-bit grey or
 /// BGR. An odd width or height is made even by repeating the last column or row. The file appears at
@@ -34,4 +34,4 @@ class Movie {
   std::size_t frames_ = 0;
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -6,7 +6,7 @@
 #include "core/error.hpp"
 #include "imaging/preprocess/preprocess.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 CameraOptions with_noise_of(FrameSource& stack, double diameter_px, bool bright, CameraOptions camera) {
   constexpr int kFrames = 3;
@@ -40,4 +40,4 @@ CameraOptions with_noise_of(FrameSource& stack, double diameter_px, bool bright,
   return camera;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

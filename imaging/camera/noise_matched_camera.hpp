@@ -5,7 +5,7 @@
 #include "imaging/camera/options.hpp"
 #include "imaging/stack/frame_source.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Returns `camera` with the given polarity (bright or dark beads) and with read_noise and
 /// electrons_per_level chosen such that its pixels are as noisy, relative to the light, as those of the
@@ -18,4 +18,4 @@ namespace twincell {
 /// \throws InputError as FrameSource, or for a stack without frames
 CameraOptions with_noise_of(FrameSource& stack, double diameter_px, bool bright, CameraOptions camera);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 #include "trajectory/unit_keys.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -273,4 +273,4 @@ std::string camera_text(const CameraOptions& options) {
   return text + fmt::format("seed = {}\n", options.seed);
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -13,7 +13,7 @@
 
 #include "trajectory/units.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Unit in which a length or a time is given.
 enum class CameraUnit {
@@ -105,4 +105,4 @@ CameraOptions read_camera_text(const std::string& text, const std::string& name)
 /// All options as the text of a CAMERA.toml.
 std::string camera_text(const CameraOptions& options);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

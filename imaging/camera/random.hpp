@@ -8,7 +8,7 @@
 #include <initializer_list>
 #include <numbers>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Purpose of a stream of random numbers.
 enum class Chance : std::uint64_t { noise = 1, lamp, trigger, storage, dirt, glare };
@@ -51,4 +51,4 @@ class RandomStream {
   bool kept_ = false;
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -15,7 +15,7 @@
 #include "imaging/camera/random.hpp"
 #include "imaging/camera/synthetic_camera.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -77,8 +77,7 @@ std::string cell_text(const SyntheticCamera& camera, const TrajectoryInfo& info,
                         info.scale.sigma_m ? "_per_t0" : "", info.drive->omega);
   if (info.drive && !info.drive->harmonics.empty())
     text += "harmonics = " + harmonics_text(info.drive->harmonics) + "\n";
-  if (info.drive && info.drive->recorded)
-    text += "# The drive was recorded; this is its sine.\n";
+  if (info.drive && info.drive->recorded) text += "# The drive was recorded; this is its sine.\n";
   if (info.scale.sigma_m || info.scale.gravity_m_s2) text += "\n[scale]\n";
   if (info.scale.sigma_m) text += fmt::format("sigma_m = {:.17g}\n", *info.scale.sigma_m);
   if (info.scale.gravity_m_s2) text += fmt::format("gravity_m_s2 = {:.17g}\n", *info.scale.gravity_m_s2);
@@ -249,4 +248,4 @@ std::size_t render(const TrajectorySource& trajectory, const CameraOptions& opti
   return render(trajectory, options, RenderJob{.folder = folder}, progress).frames;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -5,7 +5,7 @@
 
 #include "imaging/camera/random.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -58,4 +58,4 @@ cv::Mat read_out(const cv::Mat1f& light, const CameraOptions& options, std::int6
   return picture;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

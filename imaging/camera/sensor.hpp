@@ -6,7 +6,7 @@
 
 #include "imaging/camera/options.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Reads out one frame. A light of L grey levels becomes round((L + black) 2^(bits-8)), clamped to 0 ..
 /// 2^bits - 1. Electrons follow the Poisson distribution (the normal distribution above 50 electrons).
@@ -15,4 +15,4 @@ namespace twincell {
 /// \returns CV_8U, or CV_16U with values below 2^bits
 cv::Mat read_out(const cv::Mat1f& light, const CameraOptions& options, std::int64_t frame);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

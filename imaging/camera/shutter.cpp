@@ -7,7 +7,7 @@
 
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -80,4 +80,4 @@ double Shutter::plate(const Exposure& exposure, double tau) const {
                   exposure.after->plate_height, exposure.after->time - exposure.now->time, tau);
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -6,7 +6,7 @@
 
 #include "trajectory/trajectory.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// A frame, its neighbours (either may be absent), and when and how brightly it is exposed.
 struct Exposure {
@@ -39,4 +39,4 @@ class Shutter {
   double longest_gap_;
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

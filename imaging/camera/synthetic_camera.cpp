@@ -15,7 +15,7 @@
 #include "imaging/camera/random.hpp"
 #include "imaging/camera/sensor.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -321,4 +321,4 @@ std::vector<TrueBead> SyntheticCamera::truth(const Exposure& exposure) const {
   return beads;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

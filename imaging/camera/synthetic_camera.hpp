@@ -29,7 +29,7 @@
 #include "imaging/geometry/pixel_frame.hpp"
 #include "trajectory/trajectory.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// True position and size of a bead in a picture, px.
 struct TrueBead {
@@ -112,4 +112,4 @@ Rendered render(const TrajectorySource& trajectory, const CameraOptions& options
 std::size_t render(const TrajectorySource& trajectory, const CameraOptions& options,
                    const std::filesystem::path& folder, Progress& progress = Progress::none());
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -3,7 +3,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace twincell {
+namespace twincell::imaging {
 
 std::vector<PixelPoint> find_target(const cv::Mat& grey, const TargetPattern& pattern) {
   cv::Mat picture = grey;
@@ -22,4 +22,4 @@ std::vector<PixelPoint> find_target(const cv::Mat& grey, const TargetPattern& pa
   return out;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -8,7 +8,7 @@
 
 #include "imaging/geometry/pixel_point.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// A flat pattern of points with equal spacing.
 struct TargetPattern {
@@ -20,4 +20,4 @@ struct TargetPattern {
 /// cornerSubPix, or findCirclesGrid). Empty if the whole pattern is not visible.
 std::vector<PixelPoint> find_target(const cv::Mat& grey, const TargetPattern& pattern);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -4,7 +4,7 @@
 #include "core/config.hpp"
 #include "trajectory/unit_keys.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 std::optional<Drive> CellDescription::drive() const {
   const DriveSpec& s = drive_spec;
@@ -79,4 +79,4 @@ CellDescription read_cell(const std::filesystem::path& path, const std::vector<s
   return cell;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -44,7 +44,7 @@
 #include "trajectory/drive.hpp"
 #include "trajectory/units.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Description of a cell. Absent values are unknown.
 struct CellDescription {
@@ -80,4 +80,4 @@ struct CellDescription {
 CellDescription read_cell(const std::filesystem::path& file,
                           const std::vector<std::string>& assignments = {});
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -9,7 +9,7 @@
 #include "core/median.hpp"
 #include "imaging/locate/locator.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 constexpr int kBorder = 3;     // px; width of the dark border that makes a wall
@@ -307,4 +307,4 @@ CellEdges find_cell_edges(const cv::Mat& grey, bool bright, double diameter_px) 
   return edges;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -19,7 +19,7 @@
 
 #include "imaging/geometry/pixel_point.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// A point of an edge.
 struct EdgePoint {
@@ -39,4 +39,4 @@ struct CellEdges {
 /// \param diameter_px bead diameter
 CellEdges find_cell_edges(const cv::Mat& grey, bool bright, double diameter_px);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

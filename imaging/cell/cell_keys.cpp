@@ -2,7 +2,7 @@
 
 #include "imaging/cell/cell.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -88,4 +88,4 @@ const KeyTable& cell_keys() {
   return table;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -4,9 +4,9 @@
 
 #include "core/key_table.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// All spellings of all keys that read_cell() accepts.
 const KeyTable& cell_keys();
 
-}  // namespace twincell
+}  // namespace twincell::imaging

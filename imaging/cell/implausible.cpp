@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-namespace twincell {
+namespace twincell::imaging {
 
 ShakenCell shaken_cell(const CellDescription& cell) {
   ShakenCell numbers;
@@ -32,4 +32,4 @@ std::vector<std::string> implausible_numbers(const ShakenCell& cell) {
   return doubts;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

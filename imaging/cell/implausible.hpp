@@ -8,7 +8,7 @@
 
 #include "imaging/cell/cell.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Numbers of a shaken cell. Absent values are unknown.
 struct ShakenCell {
@@ -24,4 +24,4 @@ ShakenCell shaken_cell(const CellDescription& cell);
 /// frequencies of 0.1 to 2000 Hz, Gamma of 0.01 to 300. Empty if all are inside.
 std::vector<std::string> implausible_numbers(const ShakenCell& cell);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

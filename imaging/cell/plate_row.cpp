@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -74,4 +74,4 @@ double plate_height_px(const cv::Mat& grey, bool bright) {
   return quantile(heights, kPlateAt);
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -5,7 +5,7 @@
 
 #include <opencv2/core.hpp>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Height of the plate's edge above the lowest row of the picture, px; NaN if the picture does not end in a
 /// plate. In each column the edge is the first crossing of the level half way between plate and light, seen
@@ -15,4 +15,4 @@ namespace twincell {
 /// \param bright the plate is brighter than the background
 double plate_height_px(const cv::Mat& grey, bool bright);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

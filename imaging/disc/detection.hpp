@@ -8,7 +8,7 @@
 
 #include "core/choice.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// A proposed disc centre.
 struct Proposal {
@@ -67,4 +67,4 @@ struct Detection {
   double tracer_margin = 0;  ///< distance of its interior from the limit, in scatters of the other beads
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

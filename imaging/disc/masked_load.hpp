@@ -17,7 +17,7 @@
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace twincell::HWY_NAMESPACE {
+namespace twincell::imaging::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -80,7 +80,7 @@ class LaneCompaction {
 inline constexpr std::array<LaneCompaction::Order, 256> LaneCompaction::kOrders = LaneCompaction::orders();
 #endif
 
-}  // namespace twincell::HWY_NAMESPACE
+}  // namespace twincell::imaging::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

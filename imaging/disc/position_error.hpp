@@ -6,11 +6,11 @@
 
 #include "imaging/disc/detection.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// trackpy's `ep`: root mean square of sigma_x and sigma_y, px.
 [[nodiscard]] inline double position_error(const Detection& d) {
   return std::sqrt(0.5 * (d.sigma_x * d.sigma_x + d.sigma_y * d.sigma_y));
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

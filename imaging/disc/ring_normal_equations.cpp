@@ -10,7 +10,7 @@
 // This file is compiled once for each SIMD target.
 #ifndef TWINCELL_RING_NORMAL_EQUATIONS_ONCE
 #define TWINCELL_RING_NORMAL_EQUATIONS_ONCE
-namespace twincell::ring_normal_equations {
+namespace twincell::imaging::ring_normal_equations {
 
 /// Gauss-Legendre node on -1/2 .. 1/2.
 struct GaussNode {
@@ -46,7 +46,7 @@ inline std::span<const GaussNode> nodes_of(const EdgeBlur& blur) {
   return kNodes[static_cast<std::size_t>(std::min(widths, 1.0 * (kMost - kLeast)))];
 }
 
-}  // namespace twincell::ring_normal_equations
+}  // namespace twincell::imaging::ring_normal_equations
 #endif
 
 #undef HWY_TARGET_INCLUDE
@@ -57,7 +57,7 @@ inline std::span<const GaussNode> nodes_of(const EdgeBlur& blur) {
 #include "imaging/disc/masked_load.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace twincell::HWY_NAMESPACE {
+namespace twincell::imaging::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using ring_normal_equations::GaussNode, ring_normal_equations::nodes_of;
@@ -556,11 +556,11 @@ DiscMoments moments(const cv::Mat1f& picture, cv::Size size, const Disc& disc) {
           static_cast<double>(hn::GetLane(hn::MaxOfLanes(tag, most)))};
 }
 
-}  // namespace twincell::HWY_NAMESPACE
+}  // namespace twincell::imaging::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace twincell {
+namespace twincell::imaging {
 
 HWY_EXPORT(fixed_blur);
 HWY_EXPORT(round_blur);
@@ -589,5 +589,5 @@ DiscMoments disc_moments(const cv::Mat1f& picture, cv::Size size, const Disc& di
   return HWY_DYNAMIC_DISPATCH(moments)(picture, size, disc);
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging
 #endif

@@ -15,7 +15,7 @@
 #include <numbers>
 #include <opencv2/core.hpp>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// A disc of the model. Lengths in pixels.
 struct Disc {
@@ -103,4 +103,4 @@ struct DiscMoments {
 /// \param size  size of the frame; up to kSpareColumns floats past the end of each of its rows are read
 DiscMoments disc_moments(const cv::Mat1f& picture, cv::Size size, const Disc& disc);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

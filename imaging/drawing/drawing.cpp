@@ -14,7 +14,7 @@
 #include "imaging/track/overlay.hpp"
 #include "trajectory/time_unit.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -412,4 +412,4 @@ Drawn draw(const TrajectorySource& source, const DrawJob& job, Progress& progres
   return {.frames = indices.size(), .range = extremes.colours, .size = view.size()};
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -16,7 +16,7 @@
 #include "imaging/stack/chosen_frames.hpp"
 #include "trajectory/trajectory.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// The number that the colour of a bead shows.
 struct BeadColours {
@@ -59,4 +59,4 @@ View view_of(const TrajectorySource& source, const DrawJob& job);
 /// RunError if the output cannot be written
 Drawn draw(const TrajectorySource& source, const DrawJob& job, Progress& progress = Progress::none());
 
-}  // namespace twincell
+}  // namespace twincell::imaging

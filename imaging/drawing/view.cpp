@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -72,4 +72,4 @@ Projected View::project(const Vec3& r) const {
           .depth = planar_ ? 0 : std::clamp((depth - near_) / (far_ - near_), 0.0, 1.0)};
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

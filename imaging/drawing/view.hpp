@@ -7,7 +7,7 @@
 
 #include "trajectory/box.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// A point on the drawing.
 struct Projected {
@@ -45,4 +45,4 @@ class View {
   cv::Rect cell_;
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

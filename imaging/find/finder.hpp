@@ -13,7 +13,7 @@
 #include "imaging/disc/detection.hpp"
 #include "imaging/preprocess/preprocess.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Options of every finder.
 struct FindOptions {
@@ -38,4 +38,4 @@ std::vector<std::string> finder_names();
 /// Proposals of the finder with this name, one of finder_names(); empty for any other name. Pure.
 std::vector<Proposal> propose(const std::string& finder, const Prepared& image, const FindOptions& options);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -4,7 +4,7 @@
 #include "imaging/find/hough_finder.hpp"
 #include "imaging/find/vote_finder.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -33,4 +33,4 @@ std::vector<std::string> finder_names() {
   return names;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

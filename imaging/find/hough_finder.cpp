@@ -3,7 +3,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace twincell {
+namespace twincell::imaging {
 
 std::vector<Proposal> HoughFinder::find(const Prepared& image, const FindOptions& options) {
   constexpr int enlarge = 3;
@@ -30,4 +30,4 @@ std::vector<Proposal> HoughFinder::find(const Prepared& image, const FindOptions
   return found;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

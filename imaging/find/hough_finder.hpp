@@ -7,7 +7,7 @@
 
 #include "imaging/find/finder.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// cv::HoughCircles (HOUGH_GRADIENT) on the picture enlarged three times, radius +- 10 %, centres at least
 /// 0.8 d apart. Its centres are accumulator cells, so a refinement must follow. It misses some beads at
@@ -18,4 +18,4 @@ struct HoughFinder {
   static std::vector<Proposal> find(const Prepared& image, const FindOptions& options);
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

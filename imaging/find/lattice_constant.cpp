@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 
 double lattice_constant(const cv::Mat& grey) {
   constexpr double kBroad = 10;       // px; broader structures are removed
@@ -77,4 +77,4 @@ double lattice_constant(const cv::Mat& grey) {
   return constant;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Distance of nearest neighbours in a crystal that fills most of a grey frame, px, to 0.75 px from 8 to 25
 /// px; 0 if there is no such crystal. For a larger distance the result may be the distance of the gaps.
@@ -14,4 +14,4 @@ namespace twincell {
 /// prominent enough. Pure.
 double lattice_constant(const cv::Mat& grey);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -8,7 +8,7 @@
 
 #include "imaging/find/votes.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -98,4 +98,4 @@ double vote_sharpness(const cv::Mat1f& darkness, double radius_px) {
   return total > 0 ? squares / total : 0.0;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

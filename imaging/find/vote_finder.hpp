@@ -7,7 +7,7 @@
 
 #include "imaging/find/finder.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Peaks of the smoothed votes of votes.hpp. A peak nearer than 0.8 d to a better one is dropped. Edges are
 /// not thinned: only arcs that face a gap vote, so contacts do no harm. The score is the peak divided by the
@@ -22,4 +22,4 @@ struct VoteFinder {
 /// votes meet.
 double vote_sharpness(const cv::Mat1f& darkness, double radius_px);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -15,7 +15,7 @@
 
 #ifndef TWINCELL_VOTES_ONCE
 #define TWINCELL_VOTES_ONCE
-namespace twincell::votes {
+namespace twincell::imaging::votes {
 inline constexpr std::size_t kSpare = 16;  // extra floats at the end of a row, for the last vector
 inline constexpr std::size_t kReach = 2;   // half width of the gradient operator, px
 /// Storage of the votes: row v of the vote picture is in row v & mask of a ring buffer with `stride` floats
@@ -23,11 +23,11 @@ inline constexpr std::size_t kReach = 2;   // half width of the gradient operato
 struct VoteRows {
   std::int32_t first, mask, stride;
 };
-}  // namespace twincell::votes
+}  // namespace twincell::imaging::votes
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace twincell::HWY_NAMESPACE {
+namespace twincell::imaging::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using votes::kReach, votes::VoteRows;
@@ -140,11 +140,11 @@ std::size_t tops_of_row(const std::array<const float*, 3>& rows, std::size_t n, 
   return found;
 }
 
-}  // namespace twincell::HWY_NAMESPACE
+}  // namespace twincell::imaging::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace twincell {
+namespace twincell::imaging {
 
 HWY_EXPORT(across_rows);
 HWY_EXPORT(votes_of_row);
@@ -244,5 +244,5 @@ std::span<const std::int32_t> tops_of_votes(const VoteLines& lines, std::size_t 
   return {room.data(), HWY_DYNAMIC_DISPATCH(tops_of_row)(lines, n, least, room.data())};
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging
 #endif

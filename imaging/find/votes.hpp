@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Standard deviation of the Gaussian that smooths the votes, px.
 inline constexpr double kVoteSmoothing = 1.5;
@@ -44,4 +44,4 @@ void over_smoothed_votes(const cv::Mat1f& darkness, const cv::Mat1b& ignore, con
 std::span<const std::int32_t> tops_of_votes(const VoteLines& lines, std::size_t n, float least,
                                             std::vector<std::int32_t>& room);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace twincell {
+namespace twincell::imaging {
 
 Lens::Lens(cv::Size size, double rotation_deg, double distortion)
     : middle_x_(0.5 * (size.width - 1)),
@@ -51,4 +51,4 @@ double Lens::magnification(PixelPoint p) const {
   return std::sqrt((1 + k1_ * r2) * (1 + 3 * k1_ * r2));
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

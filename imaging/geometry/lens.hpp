@@ -9,7 +9,7 @@
 
 #include "imaging/geometry/pixel_point.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// The map of one camera. The rotation is counter-clockwise.
 class Lens {
@@ -27,4 +27,4 @@ class Lens {
   double middle_x_, middle_y_, unit_, cos_, sin_, k1_;
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

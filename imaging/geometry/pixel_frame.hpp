@@ -9,7 +9,7 @@
 #include "imaging/geometry/pixel_point.hpp"
 #include "trajectory/box.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Map between picture and cell (x right, z up, lengths in sigma). The camera is at rest in the laboratory
 /// and looks along +y. The map is a similarity, followed by a lens if the picture is rotated or distorted.
@@ -30,4 +30,4 @@ struct PixelFrame {
   }
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

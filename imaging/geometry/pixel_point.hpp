@@ -6,7 +6,7 @@
 /// trackpy and OpenCV's points use the same convention; COLMAP's differs by half a pixel. Every position in
 /// `imaging` follows this convention.
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// A position in a picture.
 struct PixelPoint {
@@ -14,4 +14,4 @@ struct PixelPoint {
   double y_px = 0;  ///< down, from the centre of the first row
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -9,7 +9,7 @@
 #include "imaging/link/assignment.hpp"
 #include "imaging/link/link_costs.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -151,4 +151,4 @@ void assign_open_tracks(FrameMatch& m) {
   }
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

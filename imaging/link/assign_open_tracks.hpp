@@ -6,10 +6,10 @@
 
 #include "imaging/link/frame_match.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Links the open tracks. Links whose odds against the second-best assignment are low are marked ambiguous.
 /// Two links on which one disc would pass through the other are exchanged if that is not too expensive.
 void assign_open_tracks(FrameMatch& match);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <queue>
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -189,4 +189,4 @@ Assignment assign(std::size_t rows, std::size_t columns, std::span<const Edge> e
   return Solver(rows, columns, edges, work).solve();
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Cost of assigning a row (a track) to a column (a detection).
 struct Edge {
@@ -44,4 +44,4 @@ struct Assignment {
 Assignment assign(std::size_t rows, std::size_t columns, std::span<const Edge> edges,
                   std::size_t work = std::size_t{1} << 23);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -13,7 +13,7 @@
 
 #include "imaging/link/min_cut.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -805,4 +805,4 @@ CollectiveMatching match_collectively(std::span<const PixelPoint> places,
   return Matching(places, detections, choices, diameter_px, known.newcomers).solve(known);
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

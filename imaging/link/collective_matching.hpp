@@ -40,7 +40,7 @@
 #include "imaging/geometry/pixel_point.hpp"
 #include "imaging/link/assignment.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// The cheapest matching found.
 struct CollectiveMatching {
@@ -70,4 +70,4 @@ CollectiveMatching match_collectively(std::span<const PixelPoint> places,
                                       std::span<const PixelPoint> detections, std::span<const Edge> choices,
                                       double diameter_px, const MatchKnowledge& known = {});
 
-}  // namespace twincell
+}  // namespace twincell::imaging

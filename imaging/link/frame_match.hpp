@@ -14,7 +14,7 @@
 #include "imaging/link/point_grid.hpp"
 #include "imaging/link/tracks.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Links of the tracks before a frame to the detections in it. Detections are numbered in the order of the
 /// grid, except in `ambiguous`.
@@ -72,4 +72,4 @@ struct FrameMatch {
   }
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

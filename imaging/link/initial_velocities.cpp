@@ -4,7 +4,7 @@
 #include <limits>
 #include <unordered_map>
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -102,4 +102,4 @@ std::vector<PixelPoint> initial_velocities(const LinkOptions& options, int phase
   return steps;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -15,7 +15,7 @@
 
 #include "imaging/link/link.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// The data of one frame that the linker needs.
 struct FrameOfBeads {
@@ -35,4 +35,4 @@ std::vector<PixelPoint> initial_velocities(const LinkOptions& options, int phase
                                            std::size_t frames,
                                            const std::function<FrameOfBeads(std::size_t)>& read);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -13,7 +13,7 @@
 #include "imaging/link/rematch.hpp"
 #include "imaging/link/settle.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -122,4 +122,4 @@ std::vector<std::int64_t> Linker::next(std::span<const PixelPoint> detections, c
   return ids;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

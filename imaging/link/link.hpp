@@ -27,7 +27,7 @@
 #include "imaging/link/link_options.hpp"
 #include "imaging/link/tracks.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Links frame after frame. Memory: one entry per active track, and 16 bytes per track and phase of the
 /// cycle.
@@ -73,4 +73,4 @@ class Linker {
   LinkReport last_, total_;
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// The numbers of the linker. d: bead diameter. Costs are log-odds, natural logarithm. Where no source is
 /// given, none is recorded.
@@ -71,4 +71,4 @@ inline double cost(double r2, double width) {
   return 1.5 * std::log1p(r2 / (width * width)) + 2 * std::log(width);
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace twincell {
+namespace twincell::imaging {
 
 void LinkReport::add(const LinkReport& f) {
   frames += f.frames;
@@ -19,4 +19,4 @@ void LinkReport::add(const LinkReport& f) {
   unclear_shifts += f.unclear_shifts;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

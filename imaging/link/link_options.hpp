@@ -7,7 +7,7 @@
 
 #include "imaging/geometry/pixel_point.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Options of the linker.
 struct LinkOptions {
@@ -53,4 +53,4 @@ struct LinkReport {
   void add(const LinkReport& frame);
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace twincell {
+namespace twincell::imaging {
 
 // Boost.Graph's boykov_kolmogorov_max_flow was tried on an adjacency_list. On 600 random grids of 49 and 324
 // nodes, each joined to six neighbours, with capacities as doubles and as scaled integers, it chose the same.
@@ -74,4 +74,4 @@ std::vector<std::uint8_t> MinCut::solve() {
   return moves;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

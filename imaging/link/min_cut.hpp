@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Binary choice for each node: stay or move.
 class MinCut {
@@ -40,4 +40,4 @@ class MinCut {
   std::vector<Arc> arcs_;
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-namespace twincell {
+namespace twincell::imaging {
 
 PixelPoint median(std::vector<PixelPoint>& points) {
   if (points.empty()) return {};
@@ -51,4 +51,4 @@ PointGrid::PointGrid(std::span<const PixelPoint> points, double cell) : size_(ce
   }
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

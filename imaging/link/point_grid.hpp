@@ -10,7 +10,7 @@
 
 #include "imaging/geometry/pixel_point.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 inline PixelPoint operator+(PixelPoint a, PixelPoint b) {
   return {a.x_px + b.x_px, a.y_px + b.y_px};
@@ -69,4 +69,4 @@ class PointGrid {
   std::vector<PixelPoint> points_;
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

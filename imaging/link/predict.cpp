@@ -7,7 +7,7 @@
 
 #include "imaging/link/link_costs.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -201,4 +201,4 @@ void predict(FrameMatch& m) {
   }
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -5,9 +5,9 @@
 
 #include "imaging/link/frame_match.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Sets `expected`, `expected_no_floor` and `ballistic`. No bead is expected below the lowest detection.
 void predict(FrameMatch& match);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -7,7 +7,7 @@
 #include "imaging/link/collective_matching.hpp"
 #include "imaging/link/link_costs.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -218,4 +218,4 @@ void link_left_over(FrameMatch& m) {
   }
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

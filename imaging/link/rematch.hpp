@@ -7,7 +7,7 @@
 
 #include "imaging/link/frame_match.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Whether the links are implausible: touching neighbours separate, or a track has no detection although one
 /// is left over.
@@ -29,4 +29,4 @@ bool follows_ballistic(const FrameMatch& match, const std::vector<PixelPoint>& s
 /// ambiguous.
 void link_left_over(FrameMatch& match);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

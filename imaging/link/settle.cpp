@@ -8,7 +8,7 @@
 
 #include "imaging/link/link_costs.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -199,4 +199,4 @@ void follow_neighbours(FrameMatch& m) {
   }
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -5,7 +5,7 @@
 
 #include "imaging/link/frame_match.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Links detections within 0.25 d of the expected position of a track if neither has a rival. If the position
 /// in free flight fits another detection better, the track is left to the assignment. Sets `rival_distance`.
@@ -15,4 +15,4 @@ void settle(FrameMatch& match);
 /// their neighbours and were settled by chance. Sets `neighbour_correction`.
 void follow_neighbours(FrameMatch& match);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -8,7 +8,7 @@
 #include "imaging/link/link_costs.hpp"
 #include "imaging/link/point_grid.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -206,4 +206,4 @@ std::vector<std::int64_t> update(Tracks& tracks, const FrameLinks& links, int me
   return ids;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -9,7 +9,7 @@
 #include "imaging/geometry/pixel_point.hpp"
 #include "imaging/link/link_options.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// One bead.
 struct Track {
@@ -72,4 +72,4 @@ struct FrameLinks {
 /// track of each detection
 std::vector<std::int64_t> update(Tracks& tracks, const FrameLinks& links, int memory, LinkReport& report);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

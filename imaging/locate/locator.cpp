@@ -16,7 +16,7 @@
 #include "imaging/refine/size_assignment.hpp"
 #include "imaging/refine/unlike_discs.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -182,4 +182,4 @@ Located locate(const cv::Mat& picture, const LocatorOptions& options) {
   return result;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

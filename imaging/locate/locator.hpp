@@ -17,7 +17,7 @@
 #include "imaging/refine/judge.hpp"
 #include "imaging/refine/refiner.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Options of the locator.
 struct LocatorOptions {
@@ -67,4 +67,4 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options);
 /// \throws ConfigError as `check`
 Located locate(const cv::Mat& grey, const LocatorOptions& options);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -80,4 +80,4 @@ PictureOrientation canonical_picture_orientation(const cv::Mat& picture) {
   return o;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

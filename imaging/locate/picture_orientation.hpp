@@ -12,7 +12,7 @@
 
 #include "imaging/disc/detection.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// An orientation: the picture is first transposed, then flipped.
 struct PictureOrientation {
@@ -32,4 +32,4 @@ struct PictureOrientation {
 /// \param picture CV_8U, CV_16U or CV_32F, one channel
 PictureOrientation canonical_picture_orientation(const cv::Mat& picture);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -10,7 +10,7 @@
 #include "core/median.hpp"
 #include "imaging/phase/plate_phases.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -162,4 +162,4 @@ void check_lock_by_bed(PhaseTable& table, const BedMotion& motion) {
   accept(table, ticks, "the motion of the bed");
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -14,7 +14,7 @@
 #include "imaging/phase/phase_estimation.hpp"
 #include "imaging/phase/phase_lock.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Evidence from the frames themselves, gathered while they are located. Empty: not available.
 struct LockEvidence {
@@ -41,4 +41,4 @@ void check_lock_by_bed(PhaseTable& table, const BedMotion& motion);
 /// frame 30, 2 before frame 61; frame 80 is taken twice". At most eight are named.
 std::string slips_in_words(std::span<const FramePhase> frames);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -11,7 +11,7 @@
 
 #include "core/median.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -434,4 +434,4 @@ PhaseTable estimate_phases(const BedMotion& motion, const PhaseEstimationOptions
   return table;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -8,7 +8,7 @@
 
 #include "imaging/phase/phase_lock.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Optional prior knowledge about the drive.
 struct PhaseEstimationOptions {
@@ -55,4 +55,4 @@ PhaseTable estimate_phases(const BedMotion& motion, const PhaseEstimationOptions
 /// cycles. For Gamma <= 1 the bed rests on the plate.
 std::vector<double> inelastic_bed(double gamma, int n);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

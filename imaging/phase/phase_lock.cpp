@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace twincell {
+namespace twincell::imaging {
 
 FramePhase PhaseTable::at(std::int64_t frame) const {
   if (!frames.empty() && frame < static_cast<std::int64_t>(frames.size()))
@@ -32,4 +32,4 @@ void set_phases(PhaseTable& table, std::span<const std::int64_t> ticks) {
   }
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -17,7 +17,7 @@
 #include "core/choice.hpp"
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Frame f shows phase k = (f + k_0) mod N_k of cycle j = (f + k_0) div N_k, i.e. the fraction k/N_k of a
 /// period. Phase 0 is the plate at its mean height moving up (drive.hpp). No frame may be missing from the
@@ -102,4 +102,4 @@ PhaseTable fixed_phases(const PhaseLock& lock);
 /// frame 0 \pre table.frames_per_cycle and table.first_phase are set
 void set_phases(PhaseTable& table, std::span<const std::int64_t> ticks);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -95,4 +95,4 @@ std::optional<PhaseTable> phases_from_plate(std::span<const double> plate, int s
   return table;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

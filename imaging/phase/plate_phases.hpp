@@ -9,7 +9,7 @@
 #include "imaging/phase/phase_lock.hpp"
 #include "imaging/phase/sine_slips.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// What the plate in the frames says about N frames per cycle.
 struct PlateReading {
@@ -34,4 +34,4 @@ PlateReading read_plate(std::span<const double> plate_px, int frames_per_cycle);
 std::optional<PhaseTable> phases_from_plate(std::span<const double> plate_px, int frames_per_cycle,
                                             double offset = 0);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

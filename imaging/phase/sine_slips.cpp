@@ -9,7 +9,7 @@
 
 #include "core/median.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -222,4 +222,4 @@ std::vector<int> frames_per_cycle_to_try(int stated, double apparent_period) {
   return all;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

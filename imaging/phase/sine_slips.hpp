@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// z(t) = mean + amplitude sin(2 pi (t/N + phase)), with t the tick of the frame. Lengths are in the unit of
 /// the heights.
@@ -43,4 +43,4 @@ std::optional<FreeSine> fit_free_sine(std::span<const double> heights);
 /// whole numbers from 0.85 to 1.3 times the apparent period, which missing frames shorten; at most 23.
 std::vector<int> frames_per_cycle_to_try(int stated, double apparent_period);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

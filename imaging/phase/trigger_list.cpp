@@ -14,7 +14,7 @@
 #include "core/median.hpp"
 #include "core/table_text.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -136,4 +136,4 @@ PhaseTable read_triggers(const std::filesystem::path& file, std::optional<double
   return table;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -15,7 +15,7 @@
 
 #include "imaging/phase/phase_lock.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Reads a list and rounds each frame to the nearest of N_k phases. The delay that the frames have in common
 /// (their mean position between two phases, on the circle) is PhaseTable::offset and no jitter. If two frames
@@ -28,4 +28,4 @@ namespace twincell {
 PhaseTable read_triggers(const std::filesystem::path& file, std::optional<double> drive_hz,
                          int frames_per_cycle = 0);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

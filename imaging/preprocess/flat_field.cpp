@@ -11,7 +11,7 @@
 #include "core/median.hpp"
 #include "imaging/preprocess/preprocess.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -144,4 +144,4 @@ std::unique_ptr<FrameSource> without_background(std::unique_ptr<FrameSource> fra
   return std::make_unique<Flattened>(std::move(frames), cv::Mat1f(background - level), Correction::subtract);
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -10,7 +10,7 @@
 
 #include "imaging/stack/frame_source.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Flat field from a stack that shows the cell without beads: its mean divided by its typical level, the 0.9
 /// quantile. 1 where the light is below a fifth of this level, because that is a wall and not dirt.
@@ -38,4 +38,4 @@ std::unique_ptr<FrameSource> without_background(std::unique_ptr<FrameSource> fra
 /// frame differs in size from the flat field
 std::unique_ptr<FrameSource> flattened(std::unique_ptr<FrameSource> frames, cv::Mat1f flat);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -4,7 +4,7 @@
 #include "imaging/preprocess/flat_field.hpp"
 #include "imaging/stack/open_frames.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 std::unique_ptr<FrameSource> flattened_by(std::unique_ptr<FrameSource> frames,
                                           const std::filesystem::path& stack, const std::string& flat) {
@@ -21,4 +21,4 @@ void check_flat(const std::string& flat, bool bright) {
                       "background; give frames of the cell without beads.");
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

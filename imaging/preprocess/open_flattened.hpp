@@ -8,7 +8,7 @@
 
 #include "imaging/stack/frame_source.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// `frames`, each divided by a flat field (flat_field.hpp). \param stack name of the stack, which is read
 /// again for its own flat field \param flat "": no flat field; "stack": computed from the stack itself;
@@ -21,4 +21,4 @@ std::unique_ptr<FrameSource> flattened_by(std::unique_ptr<FrameSource> frames,
 /// light between dark beads
 void check_flat(const std::string& flat, bool bright);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -13,7 +13,7 @@
 
 #include "imaging/disc/ring_normal_equations.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -380,4 +380,4 @@ Prepared prepare(const cv::Mat& grey, const PreprocessOptions& options, double r
   return p;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

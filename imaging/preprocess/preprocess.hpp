@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Options of the preprocessing.
 struct PreprocessOptions {
@@ -65,4 +65,4 @@ double blur_of(const cv::Mat1f& darkness);
 /// \param radius_px bead radius
 Prepared prepare(const cv::Mat& grey, const PreprocessOptions& options, double radius_px);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -8,7 +8,7 @@
 #include "core/error.hpp"
 #include "core/median.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 void Region::check(cv::Size picture) const {
   if (!roi.empty() && (roi & cv::Rect({0, 0}, picture)) != roi)
@@ -65,4 +65,4 @@ bool RegionFrames::next(cv::Mat& frame) {
   return true;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

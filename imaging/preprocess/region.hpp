@@ -7,7 +7,7 @@
 
 #include "imaging/stack/frame_source.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Region of a picture. Default: the whole picture.
 struct Region {
@@ -44,4 +44,4 @@ class RegionFrames : public FrameSource {
   const Region& region_;
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

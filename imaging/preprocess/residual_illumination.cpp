@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -94,4 +94,4 @@ cv::Mat1f smooth_ripple(const cv::Mat1d& mean, const cv::Mat1d& variance) {
   return map;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

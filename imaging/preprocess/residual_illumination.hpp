@@ -11,7 +11,7 @@
 
 #include <opencv2/core.hpp>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Whether the residuals of neighbouring tiles are correlated, by more than five standard deviations of the
 /// correlation by chance. Independent residuals, as from noise or from a misplaced disc, do not count.
@@ -22,4 +22,4 @@ bool has_ripple(const cv::Mat1d& mean, const cv::Mat1d& variance);
 /// \param variance  variance v_t of this mean due to noise; infinite for a tile without information
 cv::Mat1f smooth_ripple(const cv::Mat1d& mean, const cv::Mat1d& variance);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -9,7 +9,7 @@
 #include "core/median.hpp"
 #include "imaging/disc/ring_normal_equations.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -95,4 +95,4 @@ bool in_wall(const Prepared& image, const Detection& b) {
   return cv::Rect(0, 0, walls.cols, walls.rows).contains(at) && walls(at) != 0;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -5,7 +5,7 @@
 #include "imaging/disc/detection.hpp"
 #include "imaging/preprocess/preprocess.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Sets interior (median darkness inside R/2) and, over the whole disc, mass, raw_mass, signal, size and ecc:
 /// the brightness and shape measures of trackpy.
@@ -18,4 +18,4 @@ double rough_interior(const Prepared& image, const Detection& disc);
 /// Whether the centre of the disc is in a dark region that is too large for a bead.
 bool in_wall(const Prepared& image, const Detection& disc);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

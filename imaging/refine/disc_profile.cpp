@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -75,4 +75,4 @@ double DiscProfile::unlike_plain() const {
   return least;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// The radial profile shared by discs of the same appearance.
 struct DiscProfile {
@@ -30,4 +30,4 @@ struct ProfileLevel {
 };
 ProfileLevel level_at(const DiscProfile& f, double r);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -8,7 +8,7 @@
 
 #include "imaging/refine/disc_measures.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -140,4 +140,4 @@ Refined refine_by_edges(const Prepared& image, const std::vector<Proposal>& prop
   return result;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -13,7 +13,7 @@
 
 #include "imaging/refine/refiner.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Fits each proposal separately, starting from the radius with which it was proposed. Detection::ring_share
 /// is the fraction of the circle on which an edge of the right sign is found. Detection::score is 1 - (spread
@@ -28,4 +28,4 @@ inline constexpr Refiner kEdgeRefiner{.word = "edges",
                                       .model = DiscModel::circle,
                                       .fit = refine_by_edges};
 
-}  // namespace twincell
+}  // namespace twincell::imaging

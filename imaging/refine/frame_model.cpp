@@ -7,7 +7,7 @@
 #include "core/median.hpp"
 #include "imaging/refine/disc_measures.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -113,4 +113,4 @@ RingArgs FrameModel::ring_args() const {
   return args;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

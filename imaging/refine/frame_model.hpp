@@ -15,7 +15,7 @@
 #include "imaging/refine/population_priors.hpp"
 #include "imaging/refine/refiner.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// The disc of the model that belongs to a candidate.
 inline Disc disc_of(const Detection& b) {
@@ -76,4 +76,4 @@ class FrameModel {
   std::vector<double> interiors_;  // of the proposals
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

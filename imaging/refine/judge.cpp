@@ -8,7 +8,7 @@
 #include "core/median.hpp"
 #include "imaging/refine/sparse_gauss_newton.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -121,4 +121,4 @@ Judged judge(std::vector<Detection> candidates, double radius_px, int width, int
   return judged;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -6,7 +6,7 @@
 
 #include "imaging/disc/detection.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Acceptance criteria for a bead.
 struct JudgeOptions {
@@ -35,4 +35,4 @@ struct Judged {
 Judged judge(std::vector<Detection> candidates, double radius_px, int width, int height,
              const JudgeOptions& options);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

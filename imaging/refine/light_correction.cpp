@@ -9,7 +9,7 @@
 
 #include "imaging/preprocess/residual_illumination.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -139,4 +139,4 @@ bool level_ripple(FrameModel& frame) {
   return true;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -6,7 +6,7 @@
 
 #include "imaging/refine/frame_model.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Divides the light by a quadratic surface, so that the residual in the gaps between the discs vanishes.
 /// Renders the model first if it is stale.
@@ -18,4 +18,4 @@ bool level(FrameModel& frame);
 /// \returns whether there was a ripple; otherwise the picture is unchanged
 bool level_ripple(FrameModel& frame);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

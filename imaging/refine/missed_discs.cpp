@@ -7,7 +7,7 @@
 
 #include "imaging/refine/out_of_frame_discs.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -147,4 +147,4 @@ bool add_out_of_frame(FrameModel& frame, bool blur_known) {
   return frame.beads.size() > before;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

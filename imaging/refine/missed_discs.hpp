@@ -5,7 +5,7 @@
 
 #include "imaging/refine/frame_model.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Adds discs inside the frame that were not proposed. Such a disc leaves a dark disc in the residual
 /// picture, of a mean darkness of at least 0.35 over 3 x 3 blocks of pixels that are together about as wide
@@ -18,4 +18,4 @@ bool add_missed(FrameModel& frame);
 /// \returns whether any was added
 bool add_out_of_frame(FrameModel& frame, bool blur_known);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -98,4 +98,4 @@ std::vector<Proposal> out_of_frame_discs(const RingArgs& args, double radius_px,
   return found;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

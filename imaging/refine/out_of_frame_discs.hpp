@@ -13,7 +13,7 @@
 #include "imaging/disc/detection.hpp"
 #include "imaging/disc/ring_normal_equations.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Proposes centres outside the frame for which the residual picture gives evidence, strongest evidence
 /// first. One disc may give many proposals. Pure.
@@ -23,4 +23,4 @@ namespace twincell {
 ///     be seen
 std::vector<Proposal> out_of_frame_discs(const RingArgs& args, double radius_px, double deepest_px);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

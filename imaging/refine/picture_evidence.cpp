@@ -8,7 +8,7 @@
 
 #include "core/median.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -339,4 +339,4 @@ PictureEvidence picture_evidence(const cv::Mat& grey, const std::vector<Detectio
   return Explanation(levels, discs, radii_px, neighbour_radius_px).evidence();
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

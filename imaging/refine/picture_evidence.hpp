@@ -26,7 +26,7 @@
 
 #include "imaging/disc/detection.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Result for one set of discs, in nats: differences are logarithms of ratios of likelihoods.
 struct PictureEvidence {
@@ -54,4 +54,4 @@ double pixel_gain(double e1, double s1, double e0, double s0);
 /// up to half of the pixels may lie on edges. At least 1/1000 of the range of the grey levels.
 double noise_level(const cv::Mat1f& grey);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

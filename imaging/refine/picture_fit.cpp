@@ -10,7 +10,7 @@
 #include "imaging/refine/missed_discs.hpp"
 #include "imaging/refine/ring_fit.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -163,4 +163,4 @@ Refined refine_fast(const Prepared& image, const std::vector<Proposal>& proposal
   return fit_picture(image, proposals, radius_px, options, true);
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

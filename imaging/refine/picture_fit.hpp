@@ -26,7 +26,7 @@
 #include "imaging/preprocess/preprocess.hpp"
 #include "imaging/refine/refiner.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Fits all proposals of a frame together and searches the residual picture for missed discs. Pure.
 Refined refine(const Prepared& image, const std::vector<Proposal>& proposals, double radius_px,
@@ -44,4 +44,4 @@ inline constexpr Refiner kFastRefiner{.word = "fast",
                                       .model = DiscModel::plain,
                                       .fit = refine_fast};
 
-}  // namespace twincell
+}  // namespace twincell::imaging

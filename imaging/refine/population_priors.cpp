@@ -7,7 +7,7 @@
 
 #include "core/median.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -100,4 +100,4 @@ void PopulationPriors::add_to(Normal& a, Step& g, const Detection& bead) const {
   a(kX, kX) += kOfProposal, a(kY, kY) += kOfProposal;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

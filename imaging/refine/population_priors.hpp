@@ -14,7 +14,7 @@
 #include "imaging/refine/refiner.hpp"
 #include "imaging/refine/sparse_gauss_newton.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Prior of R or a: a Gaussian with wide shoulders, so that a bead that clearly differs is not pulled to the
 /// mean.
@@ -67,4 +67,4 @@ class PopulationPriors {
   double radius_spread_;  // relative, as given
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

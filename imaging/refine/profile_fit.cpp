@@ -12,7 +12,7 @@
 #include "imaging/refine/disc_measures.hpp"
 #include "imaging/refine/sparse_gauss_newton.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -405,4 +405,4 @@ Refined refine_by_profile(const Prepared& image, const std::vector<Proposal>& pr
   return refined;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -18,7 +18,7 @@
 
 #include "imaging/refine/refiner.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Fits all discs that look alike with their common profile. Only most of the better half of the proposals
 /// must be right; the proposals may miss discs. Detection::score is the fraction of the variance of the
@@ -34,4 +34,4 @@ inline constexpr Refiner kProfileRefiner{.word = "profile",
                                          .model = DiscModel::shared_profile,
                                          .fit = refine_by_profile};
 
-}  // namespace twincell
+}  // namespace twincell::imaging

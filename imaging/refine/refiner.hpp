@@ -15,7 +15,7 @@
 #include "imaging/preprocess/preprocess.hpp"
 #include "imaging/refine/disc_profile.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Options of the fit.
 struct RefineOptions {
@@ -66,4 +66,4 @@ inline DiscModel model_of(const RefineOptions& options) {
   return refiner_named(options.method).model;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

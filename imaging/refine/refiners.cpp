@@ -4,7 +4,7 @@
 #include "imaging/refine/profile_fit.hpp"
 #include "imaging/refine/refiner.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -25,4 +25,4 @@ const Refiner& refiner_named(const std::string& word) {
   return row_named(kRefiners, word, "refine", "refiner");
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -11,7 +11,7 @@
 #include "imaging/refine/disc_measures.hpp"
 #include "imaging/refine/shared_blur.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -256,4 +256,4 @@ void RingFit::measure(Detection& b, const RingSums& s, const Normal& by_noise, d
   measure_disc(frame_.image, b);
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -9,7 +9,7 @@
 #include "imaging/refine/frame_model.hpp"
 #include "imaging/refine/sparse_gauss_newton.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// The first sweep reads every so many rows: half the pixels suffice while the positions are rough.
 inline constexpr int kFirstRows = 2;
@@ -85,4 +85,4 @@ class RingFit {
       moved_since_coupling_;  // of each bead since its couplings were computed, px and darkness
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -133,4 +133,4 @@ double fit_blur(FrameModel& frame, BlurFit fit, const DiscSteps& discs) {
   return widened / std::min(old, kWide);
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -13,7 +13,7 @@
 #include "imaging/refine/frame_model.hpp"
 #include "imaging/refine/sparse_gauss_newton.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Normal equations of all discs of a frame and the steps that solve them without the blur.
 struct DiscSteps {
@@ -29,4 +29,4 @@ struct DiscSteps {
 /// \returns the change of s^2 relative to s^2, or to 0.7 px^2 if s^2 is larger; 0 if `fit` is `none`
 double fit_blur(FrameModel& frame, BlurFit fit, const DiscSteps& discs);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

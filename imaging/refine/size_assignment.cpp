@@ -11,7 +11,7 @@
 #include "core/median.hpp"
 #include "imaging/refine/sparse_gauss_newton.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -110,4 +110,4 @@ std::vector<Proposal> assign_sizes(const Prepared& image, const std::vector<Prop
   return kept;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -15,7 +15,7 @@
 #include "imaging/disc/detection.hpp"
 #include "imaging/preprocess/preprocess.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Share of a disc's squared darkness that is missing (see above). 1 if no pixel of it is visible. Pure.
 /// \param blur_px standard deviation of the edge
@@ -25,4 +25,4 @@ double missing_share(const Prepared& image, const Proposal& disc, double blur_px
 /// score times R^2 times (1 - missing/0.01). A proposal with a larger missing share has no evidence. Pure.
 std::vector<Proposal> assign_sizes(const Prepared& image, const std::vector<Proposal>& proposals);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

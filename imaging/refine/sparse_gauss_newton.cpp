@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -122,4 +122,4 @@ std::vector<Step> gauss_newton_step(const std::vector<Normal>& blocks, const std
   return x;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -17,7 +17,7 @@
 
 #include "imaging/disc/ring_normal_equations.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 inline constexpr int kFitted = RingSums::kFitted;
 using Normal = Eigen::Matrix<double, kFitted, kFitted>;  ///< order x, y, R, a
@@ -48,4 +48,4 @@ void renew(Coupling& coupling, const RingArgs& args, const std::vector<Disc>& di
 std::vector<Step> gauss_newton_step(const std::vector<Normal>& blocks, const std::vector<Coupling>& couplings,
                                     const std::vector<Step>& right);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -7,7 +7,7 @@
 #include "core/median.hpp"
 #include "imaging/refine/picture_evidence.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -57,4 +57,4 @@ std::vector<Detection> drop_unlike(const cv::Mat& grey, std::vector<Detection>& 
   return dropped;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

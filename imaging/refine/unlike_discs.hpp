@@ -8,7 +8,7 @@
 
 #include "imaging/disc/detection.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Whether some scores are so much worse than the others that drop_unlike may find such discs: 1 - score is
 /// above 0.01 plus three times its median. In pictures of beads alone none are. Pure.
@@ -23,4 +23,4 @@ bool some_may_be_unlike(const std::vector<Detection>& beads);
 std::vector<Detection> drop_unlike(const cv::Mat& grey, std::vector<Detection>& beads,
                                    const std::vector<Detection>& others, double radius_px);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

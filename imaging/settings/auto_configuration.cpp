@@ -20,7 +20,7 @@
 #include "imaging/settings/profile_model_selection.hpp"
 #include "imaging/settings/settings_choice.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -306,4 +306,4 @@ std::optional<FoundSettings> find_settings(const cv::Mat& picture, const Locator
   return choice.tried.front().settings;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -19,7 +19,7 @@
 #include "imaging/preprocess/preprocess.hpp"
 #include "imaging/settings/found_settings.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Bead diameter (px) at which the gradient votes of a frame are sharpest, searched from 6 to 80 px. Accurate
 /// to a few per cent for beads of one size. Returns 0 if no round object stands out.
@@ -38,4 +38,4 @@ SettingsChoice choose_settings(const cv::Mat& grey, const LocatorOptions& given)
 /// disc model. Empty if no round object stands out.
 std::optional<FoundSettings> find_settings(const cv::Mat& grey, const LocatorOptions& given);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -9,7 +9,7 @@
 #include "imaging/settings/find_contrast.hpp"
 #include "imaging/settings/settings_choice.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -60,4 +60,4 @@ LocatorConfiguration configure_locator(FramesAhead& frames, const LocatorOptions
   return {found, 0, {}};
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -8,7 +8,7 @@
 #include "imaging/settings/found_settings.hpp"
 #include "imaging/stack/frames_ahead.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Complete options, the frame from which the open settings were found, and the settings tried on it.
 struct LocatorConfiguration {
@@ -23,4 +23,4 @@ struct LocatorConfiguration {
 /// \throws InputError if the stack shows no discs from which a diameter could be estimated
 LocatorConfiguration configure_locator(FramesAhead& frames, const LocatorOptions& given);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -2,7 +2,7 @@
 
 #include "imaging/settings/hypothesis_test.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 double find_contrast(const cv::Mat& grey, const LocatorOptions& options) {
   PreprocessOptions plain = options.preprocess;
@@ -18,4 +18,4 @@ double find_contrast(const cv::Mat& grey, const LocatorOptions& options) {
   return explained(contrast) > kPaleClearly * explained(1) ? contrast : 1;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// The settings found, and how much of the picture they explain.
 struct FoundSettings {
@@ -31,4 +31,4 @@ struct SettingsChoice {
                                      ///< anything
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -8,7 +8,7 @@
 
 #include "core/median.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 double gained(const Detection& b) {
   return -b.radius * b.radius * std::log(std::max(1 - b.score, 1e-6));
@@ -128,4 +128,4 @@ cv::Mat busiest(const cv::Mat& grey, int side) {
   return grey(cv::Rect(best, size)).clone();
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

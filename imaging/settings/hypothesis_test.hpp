@@ -12,7 +12,7 @@
 #include "imaging/locate/locator.hpp"
 #include "imaging/refine/profile_fit.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Darkness below which discs may be too pale to be recognised.
 inline constexpr double kPale = 0.45;
@@ -57,4 +57,4 @@ ProfileTrial try_profile(const cv::Mat& grey, LocatorOptions options, const Hypo
 /// The region of a frame, at most `side` px wide and high, whose grey levels change most from pixel to pixel.
 cv::Mat busiest(const cv::Mat& grey, int side);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -7,7 +7,7 @@
 #include "core/median.hpp"
 #include "imaging/refine/profile_fit.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -134,4 +134,4 @@ std::optional<FoundSettings> find_polydisperse(const cv::Mat& grey, const Locato
                        one.contrast};
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -9,7 +9,7 @@
 #include "imaging/settings/found_settings.hpp"
 #include "imaging/settings/hypothesis_test.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Finds up to three sizes of plain discs in a region of the frame. The search starts from the known size (of
 /// plain discs or of discs with a common profile). It adds a size as long as the enlarged set explains 2 %
@@ -20,4 +20,4 @@ namespace twincell {
 std::optional<FoundSettings> find_polydisperse(const cv::Mat& grey, const LocatorOptions& given,
                                                const std::vector<Hypothesis>& all, const FoundSettings& one);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -166,4 +166,4 @@ std::optional<FoundSettings> select_profile_model(const cv::Mat& frame, const Lo
   return found;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

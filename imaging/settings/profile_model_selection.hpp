@@ -10,7 +10,7 @@
 #include "imaging/settings/found_settings.hpp"
 #include "imaging/settings/hypothesis_test.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// The best of the hypotheses with a common profile, each first extended to the rim that its profile shows;
 /// or plain discs of the width that a profile shows, if the votes did not propose that width. Empty if the
@@ -23,4 +23,4 @@ std::optional<FoundSettings> select_profile_model(const cv::Mat& frame, const Lo
                                                   const FoundSettings& plain, double lattice,
                                                   std::vector<FoundSettings>& tried);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -7,7 +7,7 @@
 #include "imaging/refine/profile_fit.hpp"
 #include "imaging/settings/find_contrast.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -143,4 +143,4 @@ std::size_t narrow_runner_up(const SettingsChoice& choice) {
   return k > 0 && choice.tried[k].evidence >= kNarrow * choice.tried.front().evidence ? k : 0;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

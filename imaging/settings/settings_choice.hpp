@@ -8,7 +8,7 @@
 #include "imaging/locate/locator.hpp"
 #include "imaging/settings/found_settings.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Ratio of evidence at which other settings replace the preferred ones.
 inline constexpr double kClearly = 1.25;
@@ -52,4 +52,4 @@ std::size_t narrow_runner_up(const SettingsChoice& choice);
 /// The best settings with other discs, as above, whatever their evidence; 0: there are none.
 std::size_t runner_up(const SettingsChoice& choice);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -9,7 +9,7 @@
 
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -82,4 +82,4 @@ std::unique_ptr<FrameSource> chosen_frames(std::unique_ptr<FrameSource> frames, 
   return std::make_unique<ChosenFrames>(std::move(frames), range);
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -8,7 +8,7 @@
 
 #include "imaging/stack/frame_source.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Frames first, first + step, ... before `end`. Default: all frames.
 struct FrameRange {
@@ -29,4 +29,4 @@ FrameRange read_frame_range(const std::string& text, const std::string& key);
 /// after the end of the stack
 std::unique_ptr<FrameSource> chosen_frames(std::unique_ptr<FrameSource> frames, FrameRange range);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

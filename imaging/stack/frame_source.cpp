@@ -1,6 +1,6 @@
 #include "imaging/stack/frame_source.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 bool natural_less(const std::string& a, const std::string& b) {
   auto digit = [](char c) { return c >= '0' && c <= '9'; };
@@ -27,4 +27,4 @@ bool natural_less(const std::string& a, const std::string& b) {
   return i == a.size();
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

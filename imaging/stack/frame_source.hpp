@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Metadata of a stack. Data that the stack does not state are absent.
 struct StackInfo {
@@ -56,4 +56,4 @@ class FrameSource {
 /// that differ only in leading zeros compare as text.
 bool natural_less(const std::string& a, const std::string& b);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

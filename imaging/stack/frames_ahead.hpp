@@ -8,7 +8,7 @@
 
 #include "imaging/stack/frame_source.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Reads a stack in order and gives access to later frames. Frames that were looked at are kept until they
 /// are read, so that memory use grows with the look-ahead.
@@ -38,4 +38,4 @@ class FramesAhead {
   std::deque<cv::Mat> waiting_;
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -4,7 +4,7 @@
 #include "imaging/stack/formats/reader.hpp"
 #include "imaging/stack/opencv_errors.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace fs = std::filesystem;
 
@@ -42,4 +42,4 @@ std::unique_ptr<FrameSource> open_frames(const fs::path& stack) {
   return reader.open(file, inside);
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

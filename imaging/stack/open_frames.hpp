@@ -7,7 +7,7 @@
 
 #include "imaging/stack/frame_source.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Opens a stack: a folder (its PNG, TIFF, JPEG, BMP and PGM files in natural order, all pages of each), one
 /// such file, a camera file (.cine; .mraw, .cih or .cihx; .seq; .mrf), a 3-D dataset of an HDF5 file
@@ -19,4 +19,4 @@ std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& stack);
 /// File or folder on disk that contains a stack: "file.h5" for "file.h5:/path".
 std::filesystem::path file_of_stack(const std::filesystem::path& stack);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

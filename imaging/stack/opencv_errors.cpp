@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
 
-namespace twincell {
+namespace twincell::imaging {
 
 void quiet_opencv() {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
@@ -18,4 +18,4 @@ std::optional<OpencvError> opencv_error(const std::exception& e) {
   return OpencvError{fault->err, fault->code == cv::Error::StsNoMem};
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Silences OpenCV and its FFmpeg on stderr. Call before the first picture or film is opened, since the log
 /// level of FFmpeg is read only once.
@@ -21,4 +21,4 @@ struct OpencvError {
 /// The OpenCV error that `e` reports; absent if `e` is not an exception of OpenCV.
 std::optional<OpencvError> opencv_error(const std::exception& e);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

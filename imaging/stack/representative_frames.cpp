@@ -6,7 +6,7 @@
 #include "core/error.hpp"
 #include "imaging/geometry/lens.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 /// The picture with rotation and distortion removed.
@@ -51,4 +51,4 @@ std::vector<std::string> picture_frames(FrameSource& stack, const std::vector<st
   return pictures;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

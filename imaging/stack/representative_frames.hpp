@@ -8,7 +8,7 @@
 
 #include "imaging/stack/frame_source.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// The bytes of an 8-bit PNG for each of `numbers` (frame numbers from 0, ascending); empty for a number
 /// beyond the end of the stack. Frames of more than 8 bits are scaled by the largest value of the first
@@ -20,4 +20,4 @@ namespace twincell {
 std::vector<std::string> picture_frames(FrameSource& stack, const std::vector<std::int64_t>& numbers,
                                         int longest = 800, double rotation_deg = 0, double distortion = 0);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

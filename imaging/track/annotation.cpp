@@ -2,7 +2,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kSize = 0.5;
@@ -48,4 +48,4 @@ void flatten_noise(cv::Mat3b& picture) {
   cv::bitwise_and(picture, cv::Scalar::all(kLevels), picture);
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Writes a text with its base line at `at`; ASCII only.
 void draw_text(cv::Mat3b& picture, const std::string& text, cv::Point at, const cv::Scalar& colour);
@@ -23,4 +23,4 @@ void draw_dot(cv::Mat3b& picture, cv::Point at, int radius, const cv::Scalar& co
 /// doubles the size of its file.
 void flatten_noise(cv::Mat3b& picture);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -14,7 +14,7 @@
 #include "imaging/disc/ring_normal_equations.hpp"
 #include "imaging/track/overlay.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -130,4 +130,4 @@ void write_debug_pictures(const std::filesystem::path& place, const cv::Mat& gre
   output.commit();
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -8,7 +8,7 @@
 #include "core/output_kind.hpp"
 #include "imaging/locate/locator.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// The output kind of the folder of pictures.
 inline Product debug_folder() {
@@ -30,4 +30,4 @@ inline Product debug_folder() {
 void write_debug_pictures(const std::filesystem::path& folder, const cv::Mat& grey,
                           const LocatorOptions& options);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

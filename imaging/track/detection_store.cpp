@@ -12,7 +12,7 @@
 #include "core/error.hpp"
 #include "core/temporary_files.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 static_assert(std::is_trivially_copyable_v<TrackedBead>);
 
@@ -67,4 +67,4 @@ std::vector<TrackedBead> DetectionStore::operator[](std::size_t f) const {
   return beads;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// One bead of one frame, between detection and trajectory.
 struct TrackedBead {
@@ -46,4 +46,4 @@ class DetectionStore {
   std::vector<std::uint64_t> ends_;  // number of beads up to and including frame f
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

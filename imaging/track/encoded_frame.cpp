@@ -7,7 +7,7 @@
 
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 EncodedFrame encoded_frame(const cv::Mat& grey) {
   constexpr int kLongest = 1600, kQuality = 90, kCompression = 9;
@@ -30,4 +30,4 @@ EncodedFrame encoded_frame(const cv::Mat& grey) {
   return {exact ? "image/png" : "image/jpeg", {bytes.begin(), bytes.end()}};
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Bytes of a picture file with their media type.
 struct EncodedFrame {
@@ -19,4 +19,4 @@ struct EncodedFrame {
 /// \pre the frame is not empty \throws RunError if it cannot be encoded
 EncodedFrame encoded_frame(const cv::Mat& grey);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

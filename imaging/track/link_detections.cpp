@@ -13,7 +13,7 @@
 #include "imaging/phase/plate_phases.hpp"
 #include "imaging/phase/trigger_list.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -192,4 +192,4 @@ LinkedDetections link_detections(const DetectionStore& located, LinkOptions link
   return stack.phases.frames.empty() ? std::move(stack) : linked(stack.phases, nullptr);
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -14,7 +14,7 @@
 #include "imaging/phase/phase_lock.hpp"
 #include "imaging/track/detection_store.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Source of a stack's phases, with the arguments of a list of triggers (trigger_list.hpp).
 struct PhaseSource {
@@ -60,4 +60,4 @@ LinkedDetections link_detections(const DetectionStore& located, LinkOptions link
                                  const PhaseSource& source, const std::filesystem::path& folder,
                                  Progress& progress = Progress::none(), const LockEvidence& evidence = {});
 
-}  // namespace twincell
+}  // namespace twincell::imaging

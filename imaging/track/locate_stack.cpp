@@ -6,7 +6,7 @@
 #include "core/error.hpp"
 #include "core/in_parallel.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -39,4 +39,4 @@ std::int64_t locate_stack(FramesAhead& frames, const LocatorOptions& options, in
   return count;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

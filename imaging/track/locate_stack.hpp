@@ -9,7 +9,7 @@
 #include "imaging/locate/locator.hpp"
 #include "imaging/stack/frames_ahead.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Receives one located frame: its number from 0, the grey frame, the located beads.
 using LocatedSink = std::function<void(std::int64_t frame, const cv::Mat& grey, const Located& located)>;
@@ -22,4 +22,4 @@ using LocatedSink = std::function<void(std::int64_t frame, const cv::Mat& grey, 
 std::int64_t locate_stack(FramesAhead& frames, const LocatorOptions& options, int threads,
                           const LocatedSink& sink, Progress& progress = Progress::none());
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -11,7 +11,7 @@
 #include "imaging/preprocess/open_flattened.hpp"
 #include "imaging/stack/open_frames.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -97,4 +97,4 @@ Located in_whole_picture(Located located, const Region& region) {
   return located;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -13,7 +13,7 @@
 #include "imaging/preprocess/region.hpp"
 #include "imaging/stack/chosen_frames.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// The options as the user gives them; empty: not given.
 struct LocatingRequest {
@@ -46,4 +46,4 @@ Located in_whole_picture(Located located, const Region& region);
 /// The options that restrict or change what is read, for the record of the result; null if there are none.
 nlohmann::json restrictions(const LocatingRequest& request);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -5,7 +5,7 @@
 
 #include "core/median.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -52,4 +52,4 @@ std::size_t MotionInExposure::unproven() const {
   return n;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -8,7 +8,7 @@
 
 #include "imaging/locate/locator.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// The fit of a frame gives a path (Located::path_px) from edges that are blurred more along one direction.
 /// An astigmatic lens or stretched pixels give the same. A path is claimed only if the beads move from this
@@ -31,4 +31,4 @@ class MotionInExposure {
   std::vector<Detection> before_;
 };
 
-}  // namespace twincell
+}  // namespace twincell::imaging

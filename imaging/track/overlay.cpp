@@ -10,7 +10,7 @@
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 cv::Mat3b draw_overlay(const cv::Mat& grey, const std::vector<Detection>& beads, int enlarge) {
   // The largest grey level of the frame is drawn white, so that 10- and 12-bit frames are not black.
@@ -78,4 +78,4 @@ void write_overlay(const std::filesystem::path& png, const cv::Mat& grey,
   write_png(png, draw_overlay(grey, beads, std::clamp(1600 / std::max(grey.cols, 1), 1, 4)));
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

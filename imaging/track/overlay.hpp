@@ -8,7 +8,7 @@
 
 #include "imaging/refine/picture_fit.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// The enlarged frame with a thin circle of the fitted radius and a centre dot for each bead: green, orange
 /// if the frame cuts the bead, magenta for tracers.
@@ -24,4 +24,4 @@ void write_png(const std::filesystem::path& png, const cv::Mat& picture);
 void write_overlay(const std::filesystem::path& png, const cv::Mat& grey,
                    const std::vector<Detection>& beads);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

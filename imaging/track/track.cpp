@@ -10,7 +10,7 @@
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/track/locate_stack.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -138,4 +138,4 @@ TrackedStack track_stack(FrameSource& stack, const LocatorOptions& given, LinkOp
           detected.outside_cell,  detected.wrong_radius};
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

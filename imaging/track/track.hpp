@@ -14,7 +14,7 @@
 #include "imaging/stack/frame_source.hpp"
 #include "imaging/track/link_detections.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// A located and linked stack.
 struct TrackedStack : LinkedDetections {
@@ -43,4 +43,4 @@ TrackedStack track_stack(FrameSource& frames, const LocatorOptions& locator, Lin
                          const PhaseSource& source = {}, const std::filesystem::path& folder = {},
                          const Region& region = {}, StageTimes* times = nullptr);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

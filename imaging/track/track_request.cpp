@@ -8,7 +8,7 @@
 #include "core/assignments.hpp"
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -110,4 +110,4 @@ PhaseLock lock_of_chosen(PhaseLock lock, const FrameRange& range) {
   return lock;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

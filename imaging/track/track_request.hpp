@@ -13,7 +13,7 @@
 #include "imaging/stack/chosen_frames.hpp"
 #include "imaging/track/link_detections.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// The options that state the source of the phases.
 struct PhaseRequest {
@@ -48,4 +48,4 @@ PhaseSource phase_source(const PhaseRequest& request, CellDescription& cell, con
 /// not divide the frames per cycle
 PhaseLock lock_of_chosen(PhaseLock lock, const FrameRange& range);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -6,7 +6,7 @@
 
 #include "core/json_text.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -150,4 +150,4 @@ void write_trajectory(const TrackedStack& stack, const TrackPlan& plan, Trajecto
   }
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -10,7 +10,7 @@
 #include "imaging/track/track.hpp"
 #include "trajectory/trajectory.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Metadata and bead slots of a trajectory made from a stack. Lengths are in sigma; sigma is
 /// cell.pixels_per_sigma or, if that is unknown, the located diameter. The origin is the cell's or, if that
@@ -34,4 +34,4 @@ std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, cons
 /// phases are known. A frame that was taken twice is written once.
 void write_trajectory(const TrackedStack& stack, const TrackPlan& plan, TrajectorySink& sink);
 
-}  // namespace twincell
+}  // namespace twincell::imaging

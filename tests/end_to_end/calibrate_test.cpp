@@ -26,8 +26,8 @@ namespace fs = std::filesystem;
 const test::RigidBed kBed = {.gamma = 1.3, .columns = 12, .rows = 5, .phases = 20, .cycles = 3};
 
 /// Films a known bed. Each frame is 0.04 t0 late.
-void film(const TemporaryFolder& folder, const CameraOptions& camera) {
-  render(test::rigid_bed(kBed), camera, folder / "frames");
+void film(const TemporaryFolder& folder, const imaging::CameraOptions& camera) {
+  imaging::render(test::rigid_bed(kBed), camera, folder / "frames");
 }
 
 nlohmann::json run_json(const std::vector<std::string>& words) {
@@ -70,7 +70,7 @@ void write_bounces(const fs::path& file) {
 TEST(Calibrate, AStackOfUnknownScaleDriveAndPhaseComesBackAndItsTwinUsesThem) {
   const TemporaryFolder folder;
   const double late = 0.04;  // t0; a frame is 2 pi/20
-  const CameraOptions camera{
+  const imaging::CameraOptions camera{
       .pixels_per_sigma = 14.37, .max_height = 9, .rotation_deg = 0.6, .trigger_offset = late, .seed = 8};
   film(folder, camera);
   const std::string frames = folder / "frames", file = folder / "cell.calibration.toml",
@@ -230,10 +230,11 @@ TEST(Calibrate, TheTwinOfAHiddenCellAgreesInBouncingAndConvection) {
 
 TEST(Calibrate, DroppedFramesAreCountedAndTheDriveStands) {
   const TemporaryFolder folder;
-  const CameraOptions camera{.pixels_per_sigma = 12, .max_height = 8, .drop = 0.02, .seed = 4};
+  const imaging::CameraOptions camera{.pixels_per_sigma = 12, .max_height = 8, .drop = 0.02, .seed = 4};
   test::RigidBed bed = kBed;
   bed.cycles = 6;
-  const Rendered done = render(test::rigid_bed(bed), camera, RenderJob{.folder = folder / "frames"});
+  const imaging::Rendered done =
+      imaging::render(test::rigid_bed(bed), camera, imaging::RenderJob{.folder = folder / "frames"});
   ASSERT_GT(done.dropped, 0U);
   const nlohmann::json p =
       run_json({"calibrate", "plate", folder / "frames", "--cell", folder / "frames/CELL.toml"});

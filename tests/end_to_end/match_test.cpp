@@ -58,7 +58,7 @@ fs::path film_above_plate(const TemporaryFolder& folder, double gamma, int seed)
                          "--max-height", "22"})
                 .code,
             0);
-  const double plate_px = read_cell(stack / "CELL.toml").origin->y_px;
+  const double plate_px = imaging::read_cell(stack / "CELL.toml").origin->y_px;
   for (const auto& entry : fs::directory_iterator(stack))
     if (entry.path().extension() == ".png") {
       const cv::Mat all = cv::imread(entry.path().string(), cv::IMREAD_UNCHANGED);
@@ -452,9 +452,9 @@ TEST(Match, SaysWhatTheCellLacksAndLeavesNothing) {
 }
 
 TEST(Match, TheCellsDriveDisplacesTheScenes) {
-  CellDescription cell;
+  imaging::CellDescription cell;
   cell.width = 12;
-  cell.origin = PixelPoint{0, 100};
+  cell.origin = imaging::PixelPoint{0, 100};
   cell.phase_lock.frames_per_cycle = 20;
   cell.drive_spec.gamma = 2;
   cell.drive_spec.omega = 2;

@@ -81,7 +81,8 @@ TEST(New, TheShippedStacksGiveTheNumbersOfTheirHandWrittenCells) {
                    cell = folder / (std::string(gamma) + ".toml");
     const nlohmann::json d = run_json({"new", stack, "-o", cell, "--drive-gamma", gamma})["cells"][0];
     EXPECT_TRUE(d["open"].empty() && d["not_measured"].empty()) << d.dump(1);
-    const CellDescription hand = read_cell(stack / "CELL.toml"), found = read_cell(cell);
+    const imaging::CellDescription hand = imaging::read_cell(stack / "CELL.toml"),
+                                   found = imaging::read_cell(cell);
     const auto error = [&](const char* key, std::size_t k = 0) {
       return d["measured"][key][k]["standard_error"].get<double>();
     };
@@ -158,8 +159,8 @@ TEST(New, SeveralStacksGetACellEachInOneFolder) {
       run_json({"new", a, b, "-o", folder / "cells", "--sigma-mm", "2", "--drive-hz", "11.15"});
   ASSERT_EQ(d["cells"].size(), 2U);
   // 2 mm and 11.15 Hz are omega = 1.0003 /t0: Gamma is A omega^2.
-  EXPECT_NEAR(read_cell(folder / "cells/copy-of-gamma-0.9.toml").drive()->gamma(), 0.9, 0.003);
-  EXPECT_NEAR(read_cell(folder / "cells/copy-of-gamma-1.6.toml").drive()->gamma(), 1.6, 0.003);
+  EXPECT_NEAR(imaging::read_cell(folder / "cells/copy-of-gamma-0.9.toml").drive()->gamma(), 0.9, 0.003);
+  EXPECT_NEAR(imaging::read_cell(folder / "cells/copy-of-gamma-1.6.toml").drive()->gamma(), 1.6, 0.003);
 }
 
 TEST(New, OneFrameGivesBeadsWallsAndSaysThatTheMotionIsMissing) {
@@ -181,7 +182,7 @@ TEST(New, AFrameOfAnotherSizeEndsTheStackThere) {
   EXPECT_EQ(ran.code, 0) << ran.err;
   EXPECT_NE(ran.err.find("only the first 25 frames are used"), std::string::npos) << ran.err;
   EXPECT_NE(ran.err.find("frame_00025.png"), std::string::npos) << ran.err;
-  EXPECT_NEAR(read_cell(folder / "CELL.toml").drive()->amplitude, 0.9, 0.003);
+  EXPECT_NEAR(imaging::read_cell(folder / "CELL.toml").drive()->amplitude, 0.9, 0.003);
 }
 
 TEST(New, AStackWithoutBeadsGivesWallsAndPlate) {

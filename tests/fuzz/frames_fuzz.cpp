@@ -23,7 +23,7 @@ extern "C" const char* __lsan_default_suppressions() {
   return "leak:libhdf5";
 }
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 extern const Reader cine_reader, seq_reader, mrf_reader, mraw_reader, tiff_reader, picture_reader,
     hdf5_reader;
 }
@@ -32,13 +32,13 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace twincell;
-using Source = std::unique_ptr<FrameSource>;
+using Source = std::unique_ptr<imaging::FrameSource>;
 
 constexpr std::string_view kFormat = TWINCELL_FUZZ_READER;
 
 /// The reader of a single-file format.
-const frames::Reader& reader() {
-  using namespace frames;
+const imaging::frames::Reader& reader() {
+  using namespace imaging::frames;
   return kFormat == "cine"      ? cine_reader
          : kFormat == "seq"     ? seq_reader
          : kFormat == "mrf"     ? mrf_reader
@@ -92,7 +92,7 @@ void read_stack(const std::function<Source()>& open) {
 
 /// Opens a file as `open_frames` does: a file of another format is left to another reader.
 Source open_owned(const fs::path& file) {
-  return reader().owns(frames::head_of(file)) ? reader().open(file, "") : nullptr;
+  return reader().owns(imaging::frames::head_of(file)) ? reader().open(file, "") : nullptr;
 }
 
 }  // namespace
@@ -105,7 +105,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const auto& entry : fs::directory_iterator(place)) fs::remove(entry.path());
     if (kFormat == "folder") write_folder(place, all);
     read_stack([&] {
-      return kFormat == "folder" ? frames::open_folder(place)
+      return kFormat == "folder" ? imaging::frames::open_folder(place)
                                  : reader().open(write_photron_pair(place, all), "");
     });
   } else if (kFormat == "hdf5") {

@@ -6,7 +6,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace twincell;
   const fuzz::MemoryFile file(data, size);
-  fuzz::accept_or_refuse([&] { (void)read_triggers(file.path(), 8.0); });
-  fuzz::accept_or_refuse([&] { (void)read_triggers(file.path(), std::nullopt, 20); });
+  fuzz::accept_or_refuse([&] { (void)imaging::read_triggers(file.path(), 8.0); });
+  fuzz::accept_or_refuse([&] { (void)imaging::read_triggers(file.path(), std::nullopt, 20); });
   return 0;
 }

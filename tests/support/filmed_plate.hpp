@@ -7,6 +7,7 @@
 
 #include "imaging/camera/synthetic_camera.hpp"
 #include "imaging/cell/cell_edges.hpp"
+#include "imaging/stack/frame_source.hpp"
 #include "tests/support/rigid_bed.hpp"
 
 namespace twincell::test {
@@ -17,12 +18,12 @@ inline RigidBed small_bed(double gamma, int cycles) {
 }
 
 /// Films the bed and returns the frames in memory.
-inline std::vector<cv::Mat> film(const MemoryTrajectory& bed, const CameraOptions& options) {
-  const SyntheticCamera camera(options, bed.info());
+inline std::vector<cv::Mat> film(const MemoryTrajectory& bed, const imaging::CameraOptions& options) {
+  const imaging::SyntheticCamera camera(options, bed.info());
   std::vector<cv::Mat> frames;
   for (std::size_t f = 0; f < bed.n_frames(); ++f) {
     const Frame& now = bed.frames()[f];
-    Exposure exposure{.now = &now};
+    imaging::Exposure exposure{.now = &now};
     if (f > 0) exposure.before = &bed.frames()[f - 1];
     if (f + 1 < bed.n_frames()) exposure.after = &bed.frames()[f + 1];
     exposure.late = options.trigger_offset;
@@ -32,7 +33,7 @@ inline std::vector<cv::Mat> film(const MemoryTrajectory& bed, const CameraOption
 }
 
 /// Images in memory as a stack.
-class FilmedFrames : public FrameSource {
+class FilmedFrames : public imaging::FrameSource {
  public:
   explicit FilmedFrames(std::vector<cv::Mat> frames) : frames_(std::move(frames)) {}
   bool next(cv::Mat& frame) override {

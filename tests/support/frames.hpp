@@ -35,7 +35,7 @@ inline void put(const std::filesystem::path& file, const std::string& bytes) {
 
 /// All frames of a stack. A returned frame does not change when the next one is read.
 inline std::vector<cv::Mat> read_all(const std::filesystem::path& stack) {
-  const auto source = open_frames(stack);
+  const auto source = imaging::open_frames(stack);
   std::vector<cv::Mat> frames;
   for (cv::Mat frame; source->next(frame);) frames.push_back(frame);
   return frames;

@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 void refuse(const std::filesystem::path& file, const std::string& complaint) {
   throw InputError(Where{.file = file.string(), .key = {}}, complaint);
@@ -85,4 +85,4 @@ void require_plausible_size(const std::filesystem::path& file, std::uint64_t wid
                              height, file_size));
 }
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

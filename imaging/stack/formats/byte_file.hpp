@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 /// \throws InputError always: "FILE: complaint"
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& complaint);
@@ -61,4 +61,4 @@ class ByteFile {
 void require_plausible_size(const std::filesystem::path& file, std::uint64_t width, std::uint64_t height,
                             std::uint64_t bytes_per_pixel, std::uint64_t file_size);
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

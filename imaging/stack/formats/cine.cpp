@@ -10,7 +10,7 @@
 #include "imaging/stack/formats/raw_stack.hpp"
 #include "imaging/stack/formats/reader.hpp"
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 namespace {
 
@@ -186,4 +186,4 @@ const Reader cine_reader = {
       return std::make_unique<Cine>(file);
     }};
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

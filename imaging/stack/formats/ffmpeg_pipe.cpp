@@ -20,7 +20,7 @@
 
 extern char** environ;  // NOLINT: no POSIX header declares it
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 namespace {
 
@@ -251,4 +251,4 @@ std::unique_ptr<FrameSource> open_ffmpeg(const fs::path& file, const VideoFacts&
   return std::make_unique<Piped>(file, facts);
 }
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

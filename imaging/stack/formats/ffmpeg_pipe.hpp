@@ -9,7 +9,7 @@
 
 #include "imaging/stack/frame_source.hpp"
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 /// Properties of the first video stream of a file, as ffprobe reports them.
 struct VideoFacts {
@@ -40,4 +40,4 @@ std::optional<std::size_t> count_frames(const std::filesystem::path& file);
 /// Opens a video: all frames, grey, at the bit depth of the file. Rejects files that ffmpeg finds damaged.
 std::unique_ptr<FrameSource> open_ffmpeg(const std::filesystem::path& file, const VideoFacts& facts);
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

@@ -9,7 +9,7 @@
 #include "imaging/stack/formats/reader.hpp"
 #include "imaging/stack/formats/size_guard.hpp"
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 extern const Reader tiff_reader, picture_reader;
 
@@ -105,4 +105,4 @@ std::unique_ptr<FrameSource> open_folder(const fs::path& folder) {
   return std::make_unique<Folder>(std::move(files), others);
 }
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

@@ -12,7 +12,7 @@
 #include "imaging/stack/formats/byte_file.hpp"
 #include "imaging/stack/formats/reader.hpp"
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 namespace {
 
@@ -205,4 +205,4 @@ const Reader hdf5_reader = {
       return std::make_unique<Hdf5Stack>(file, inside);
     }};
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

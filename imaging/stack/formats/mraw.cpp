@@ -12,7 +12,7 @@
 #include "imaging/stack/formats/raw_stack.hpp"
 #include "imaging/stack/formats/reader.hpp"
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 namespace {
 
@@ -180,4 +180,4 @@ const Reader mraw_reader = {
       return std::make_unique<Mraw>(planes ? file : *other, planes ? *other : file);
     }};
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

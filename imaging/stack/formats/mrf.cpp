@@ -7,7 +7,7 @@
 #include "imaging/stack/formats/raw_stack.hpp"
 #include "imaging/stack/formats/reader.hpp"
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 namespace {
 
@@ -44,4 +44,4 @@ const Reader mrf_reader = {
       return std::make_unique<Mrf>(file);
     }};
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

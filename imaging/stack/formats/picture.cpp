@@ -15,7 +15,7 @@
 #include "imaging/stack/formats/raw_pixels.hpp"
 #include "imaging/stack/formats/reader.hpp"
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 namespace {
 
@@ -160,4 +160,4 @@ const Reader picture_reader = {
       return std::make_unique<Picture>(file);
     }};
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

@@ -8,7 +8,7 @@
 
 #include "imaging/stack/formats/byte_file.hpp"
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 namespace {
 
@@ -71,4 +71,4 @@ cv::Mat grey(const cv::Mat& picture, const std::filesystem::path& file) {
   return real;
 }
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 /// Storage layout of one uncompressed frame.
 struct RawLayout {
@@ -37,4 +37,4 @@ void unpack_bits(const std::uint8_t* from, int bits, std::size_t n, std::uint16_
 /// \throws InputError naming `file` unless there are 1, 3 or 4 channels
 cv::Mat grey(const cv::Mat& picture, const std::filesystem::path& file);
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 bool RawStack::next(cv::Mat& frame) {
   if (read_ == frames_) return false;
@@ -50,4 +50,4 @@ void RawStack::set_stamped_rate(std::optional<double> first_s, std::optional<dou
                                       *info_.frame_rate_hz, *info_.stamped_rate_hz));
 }
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

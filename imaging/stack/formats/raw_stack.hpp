@@ -10,7 +10,7 @@
 #include "imaging/stack/formats/raw_pixels.hpp"
 #include "imaging/stack/frame_source.hpp"
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 /// A derived class reads its header in its constructor, where it sets frames_, layout_ and info_, and
 /// implements place(), the position of a frame.
@@ -56,4 +56,4 @@ class RawStack : public FrameSource {
   std::vector<std::uint8_t> raw_;
 };
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

@@ -12,7 +12,7 @@
 
 #include "imaging/stack/frame_source.hpp"
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 /// Start of a file, from which a reader decides whether the file has its format.
 struct Head {
@@ -46,4 +46,4 @@ const Reader& reader_of(const Head& head);
 /// Opens a folder of pictures as a stack.
 std::unique_ptr<FrameSource> open_folder(const std::filesystem::path& folder);
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

@@ -12,7 +12,7 @@
 #define TWINCELL_READERS(EACH) \
   EACH(tiff) EACH(picture) EACH(cine) EACH(seq) EACH(mrf) EACH(hdf5) EACH(mraw) EACH(video)
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 #define TWINCELL_DECLARE(name) extern const Reader name##_reader;
 TWINCELL_READERS(TWINCELL_DECLARE)
@@ -59,4 +59,4 @@ const Reader& reader_of(const Head& head) {
              known));
 }
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

@@ -6,7 +6,7 @@
 #include "imaging/stack/formats/raw_stack.hpp"
 #include "imaging/stack/formats/reader.hpp"
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 namespace {
 
@@ -94,4 +94,4 @@ const Reader seq_reader = {
       return std::make_unique<Seq>(file);
     }};
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

@@ -9,7 +9,7 @@
 
 #include "imaging/stack/formats/byte_file.hpp"
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 /// Stores size and type of value of the first frame and rejects a frame with another. The message names both
 /// frames. Grey values of 8 and of 16 bits are on different scales, so a threshold of one is wrong for the
@@ -41,4 +41,4 @@ class SizeGuard {
   std::string first_;
 };
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

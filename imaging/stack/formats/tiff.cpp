@@ -19,7 +19,7 @@
 #include "imaging/stack/formats/reader.hpp"
 #include "imaging/stack/formats/size_guard.hpp"
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 namespace {
 
@@ -465,4 +465,4 @@ const Reader tiff_reader = {
       return std::make_unique<Pages>(file, walked);
     }};
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

@@ -16,7 +16,7 @@
 #include "imaging/stack/formats/size_guard.hpp"
 #include "imaging/stack/opencv_errors.hpp"
 
-namespace twincell::frames {
+namespace twincell::imaging::frames {
 
 namespace {
 
@@ -121,4 +121,4 @@ const Reader video_reader = {
     .owns = [](const Head& head) { return !is_text(head) || head.starts_with("YUV4MPEG2"); },
     .open = open_video};
 
-}  // namespace twincell::frames
+}  // namespace twincell::imaging::frames

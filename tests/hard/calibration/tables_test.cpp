@@ -29,11 +29,11 @@ std::pair<double, double> of_calibration(const std::filesystem::path& file) {
   return {table.column("a").at(1), table.column("b").at(1)};
 }
 std::pair<double, double> of_triggers(const std::filesystem::path& file) {
-  const PhaseTable table = read_triggers(file, 1.0, 4);
+  const imaging::PhaseTable table = imaging::read_triggers(file, 1.0, 4);
   return {table.frames.at(1).cycle * 4.0, table.frames.at(1).phase};
 }
 std::pair<double, double> of_truth(const std::filesystem::path& file) {
-  const auto truth = read_truth(file);
+  const auto truth = imaging::read_truth(file);
   return {truth.at(0).at(1).x, truth.at(0).at(1).y};
 }
 std::pair<double, double> of_beads(const std::filesystem::path& file) {
@@ -160,7 +160,7 @@ TEST(Tables, TriggersAreBelievedOnlyAsFarAsTheyAreOne) {
   };
   for (const Case& c : cases) {
     put_file(folder / "t.csv", c.text);
-    expect_refusal<InputError>([&] { (void)read_triggers(folder / "t.csv", 1.0, 4); }, c.words);
+    expect_refusal<InputError>([&] { (void)imaging::read_triggers(folder / "t.csv", 1.0, 4); }, c.words);
   }
 }
 
@@ -179,7 +179,7 @@ TEST(Tables, TruthHasWholeFramesAndRadii) {
                         {"0,1,2,3,0", "r_px: is 0"}};
   for (const Case& c : cases) {
     put_file(folder / "t.csv", "frame,id,x_px,y_px,r_px\n" + std::string(c.row) + "\n");
-    expect_refusal<InputError>([&] { (void)read_truth(folder / "t.csv"); }, c.words);
+    expect_refusal<InputError>([&] { (void)imaging::read_truth(folder / "t.csv"); }, c.words);
   }
 }
 

@@ -14,6 +14,7 @@
 #include "tests/support/temporary_folder.hpp"
 
 using namespace twincell;
+using namespace twincell::imaging;
 
 namespace fs = std::filesystem;
 

@@ -28,7 +28,7 @@ struct Found {
   StackEdges edges;
 };
 
-Found look_at(const MemoryTrajectory& bed, const CameraOptions& camera) {
+Found look_at(const MemoryTrajectory& bed, const imaging::CameraOptions& camera) {
   test::FilmedFrames frames(test::film(bed, camera));
   Found found;
   found.edges = read_stack_edges(frames, camera.bright, camera.pixels_per_sigma, 1);
@@ -44,15 +44,17 @@ StackEdges edges_by_hand(std::mt19937_64& generator, double tilt_left, double ti
   std::uniform_real_distribution<double> uniform(0, 1);
   StackEdges e;
   e.size = {340, 300};
-  const Lens lens(e.size, rotation_deg, 0);
+  const imaging::Lens lens(e.size, rotation_deg, 0);
   for (int f = 0; f < 4; ++f) {
     const double floor = 270 + 8 * std::sin(2 * std::numbers::pi * f / 4);
-    std::vector<EdgePoint> left, right, plate;
+    std::vector<imaging::EdgePoint> left, right, plate;
     for (int y = 20; y < 255; y += 2) {
       const double up = floor - y;
       const bool behind = uniform(generator) < hidden;
-      const PixelPoint l = lens.picture_from_ideal({20 - std::tan(tilt_left * kDegree) * up, double(y)}),
-                       r = lens.picture_from_ideal({320 + std::tan(tilt_right * kDegree) * up, double(y)});
+      const imaging::PixelPoint l = lens.picture_from_ideal(
+                                    {20 - std::tan(tilt_left * kDegree) * up, double(y)}),
+                                r = lens.picture_from_ideal(
+                                    {320 + std::tan(tilt_right * kDegree) * up, double(y)});
       left.push_back(
           {{l.x_px + noise(generator) + (behind ? 3 + 12 * uniform(generator) : 0), std::round(l.y_px)},
            0.05});
@@ -64,7 +66,7 @@ StackEdges edges_by_hand(std::mt19937_64& generator, double tilt_left, double ti
       right.back().at.x_px += (r.y_px - std::round(r.y_px)) * std::tan((tilt_right - rotation_deg) * kDegree);
     }
     for (int x = 25; x < 315; x += 2) {
-      const PixelPoint p = lens.picture_from_ideal({double(x), floor});
+      const imaging::PixelPoint p = lens.picture_from_ideal({double(x), floor});
       const bool behind = uniform(generator) < hidden;
       plate.push_back(
           {{p.x_px, p.y_px + noise(generator) - (behind ? 15 + 60 * uniform(generator) : 0)}, 0.05});
@@ -80,11 +82,11 @@ StackEdges edges_by_hand(std::mt19937_64& generator, double tilt_left, double ti
 
 TEST(CellGeometry, AFilmedCellComesBack) {
   const MemoryTrajectory bed = test::rigid_bed(test::small_bed(1.5, 2));
-  const CameraOptions camera{.pixels_per_sigma = 14.3, .max_height = 9, .seed = 3};
-  const SyntheticCamera truth(camera, bed.info());
+  const imaging::CameraOptions camera{.pixels_per_sigma = 14.3, .max_height = 9, .seed = 3};
+  const imaging::SyntheticCamera truth(camera, bed.info());
   const auto [g, edges] = look_at(bed, camera);
   ASSERT_TRUE(g.has_left && g.has_right && g.has_plate);
-  const PixelFrame& map = truth.pixel_frame();
+  const imaging::PixelFrame& map = truth.pixel_frame();
   std::cout << "width " << g.width_px() - 12 * 14.3 << " +- " << g.width_error_px() << ", x_left "
             << g.fit.value("x_left") - map.origin.x_px << " +- " << g.fit.standard_error("x_left")
             << ", turn " << g.rotation_deg << " +- " << g.fit.standard_error("rotation") << ", tilts "
@@ -113,15 +115,15 @@ TEST(CellGeometry, AFilmedCellComesBack) {
 
 TEST(CellGeometry, TurnBendTiltAndUnevenLightComeBackTogether) {
   const MemoryTrajectory bed = test::rigid_bed(test::small_bed(1.5, 2));
-  const CameraOptions camera{.pixels_per_sigma = 16,
-                             .margin_px = 40,
-                             .max_height = 9,
-                             .rotation_deg = 1.2,
-                             .distortion = 0.02,
-                             .left_tilt = 1.0,
-                             .right_tilt = -0.6,
-                             .vignetting = 0.4,
-                             .seed = 5};
+  const imaging::CameraOptions camera{.pixels_per_sigma = 16,
+                                      .margin_px = 40,
+                                      .max_height = 9,
+                                      .rotation_deg = 1.2,
+                                      .distortion = 0.02,
+                                      .left_tilt = 1.0,
+                                      .right_tilt = -0.6,
+                                      .vignetting = 0.4,
+                                      .seed = 5};
   const auto [g, edges] = look_at(bed, camera);
   ASSERT_TRUE(g.has_left && g.has_right && g.has_plate);
   std::cout << "turn " << g.rotation_deg << " +- " << g.fit.standard_error("rotation") << ", k1 "
@@ -147,18 +149,18 @@ TEST(CellGeometry, FilmedCellsOfManyKindsComeBack) {
   double squares = 0, widest = 0;
   for (int i = 0; i < kStacks; ++i) {
     const MemoryTrajectory bed = test::rigid_bed(test::small_bed(within(1.1, 2.2), 1));
-    const CameraOptions camera{.pixels_per_sigma = within(11, 17),
-                               .margin_px = std::round(within(15, 40)),
-                               .max_height = 9,
-                               .rotation_deg = within(-1.5, 1.5),
-                               .distortion = within(-0.02, 0.02),
-                               .left_tilt = within(-1, 1),
-                               .right_tilt = within(-1, 1),
-                               .blur_px = within(0.6, 1),
-                               .vignetting = within(0, 0.4),
-                               .lamp_flicker = within(0, 0.02),
-                               .seed = static_cast<std::uint64_t>(i)};
-    const SyntheticCamera truth(camera, bed.info());
+    const imaging::CameraOptions camera{.pixels_per_sigma = within(11, 17),
+                                        .margin_px = std::round(within(15, 40)),
+                                        .max_height = 9,
+                                        .rotation_deg = within(-1.5, 1.5),
+                                        .distortion = within(-0.02, 0.02),
+                                        .left_tilt = within(-1, 1),
+                                        .right_tilt = within(-1, 1),
+                                        .blur_px = within(0.6, 1),
+                                        .vignetting = within(0, 0.4),
+                                        .lamp_flicker = within(0, 0.02),
+                                        .seed = static_cast<std::uint64_t>(i)};
+    const imaging::SyntheticCamera truth(camera, bed.info());
     const double left = truth.pixel_frame().origin.x_px, width = 12 * camera.pixels_per_sigma;
     const auto [g, edges] = look_at(bed, camera);
     ASSERT_TRUE(g.has_left && g.has_right && g.has_plate) << i;
@@ -362,20 +364,20 @@ TEST(BeadWalls, TiltOfALeaningCellComesBackFromItsBeads) {
 }
 
 TEST(Target, AChessboardGivesScaleTurnBendAndTilt) {
-  const TargetPattern pattern{.kind = "chessboard", .columns = 9, .rows = 6};
+  const imaging::TargetPattern pattern{.kind = "chessboard", .columns = 9, .rows = 6};
   const cv::Size size(400, 300);
-  const Lens lens(size, 2.0, 0.03);
+  const imaging::Lens lens(size, 2.0, 0.03);
   std::mt19937_64 generator(13);
   std::normal_distribution<double> noise(0, 0.05);
   int covered = 0;
   const int trials = 200;
   double squares = 0;
   for (int i = 0; i < trials; ++i) {
-    std::vector<PixelPoint> points;
+    std::vector<imaging::PixelPoint> points;
     for (int r = 0; r < 6; ++r)
       for (int c = 0; c < 9; ++c) {
         const double u = 35 * (c - 4.0), v = 35 * (r - 2.5), w = 1 + 2e-4 * u;
-        const PixelPoint p = lens.picture_from_ideal({205 + u / w, 140 + v / w});
+        const imaging::PixelPoint p = lens.picture_from_ideal({205 + u / w, 140 + v / w});
         points.push_back({p.x_px + noise(generator), p.y_px + noise(generator)});
       }
     const TargetFit t = fit_target(points, pattern, size);
@@ -398,10 +400,10 @@ TEST(Target, CornersOfADrawnBoardAreFound) {
   for (int r = 0; r < 7; ++r)
     for (int c = 0; c < 10; ++c)
       if ((r + c) % 2 == 0) board(cv::Rect(20 + 36 * c, 20 + 36 * r, 36, 36)) = 0;
-  const auto points = find_target(board, {.kind = "chessboard", .columns = 9, .rows = 6});
+  const auto points = imaging::find_target(board, {.kind = "chessboard", .columns = 9, .rows = 6});
   ASSERT_EQ(points.size(), 54U);
   // The first inner corner is between pixels 55 and 56.
   EXPECT_NEAR(std::min(points.front().x_px, points.back().x_px), 55.5, 0.1);
   EXPECT_NEAR(std::max(points.front().y_px, points.back().y_px), 19.5 + 36 * 6, 0.1);
-  EXPECT_TRUE(find_target(cv::Mat1b(300, 400, static_cast<unsigned char>(255)), {}).empty());
+  EXPECT_TRUE(imaging::find_target(cv::Mat1b(300, 400, static_cast<unsigned char>(255)), {}).empty());
 }

@@ -19,8 +19,8 @@ const std::filesystem::path kImages = TWINCELL_SOURCE_DIR "/../shared/real_image
 constexpr const char* kNotThere = "The real images are not beside the source tree.";
 
 SizeStatistics census_of(const std::filesystem::path& stack) {
-  const auto frames = open_frames(stack);
-  LocatorOptions locator;
+  const auto frames = imaging::open_frames(stack);
+  imaging::LocatorOptions locator;
   return count_beads(locate_beads(*frames, locator, std::nullopt, 20, 1));
 }
 
@@ -34,8 +34,8 @@ TEST(RealBeads, SizesAreThoseOfTheirTruthAndWhatIsNoWallIsNone) {
   // Radii of the black beads with the most certain reference values, from a separate fit that is accurate to
   // 0.05 px.
   double sum = 0, squares = 0, n = 0;
-  for (const auto& frame : read_truth(folder))
-    for (const TruthBead& bead : frame)
+  for (const auto& frame : imaging::read_truth(folder))
+    for (const imaging::TruthBead& bead : frame)
       if (bead.counts && bead.u < 0.051) sum += 2 * bead.r, squares += 4 * bead.r * bead.r, ++n;
   const double mean = sum / n, spread = std::sqrt(squares / n - mean * mean) / mean;
   const SizeStatistics c = census_of(folder);
@@ -44,7 +44,7 @@ TEST(RealBeads, SizesAreThoseOfTheirTruthAndWhatIsNoWallIsNone) {
   EXPECT_NEAR(c.diameter.value, mean, 0.1);
   EXPECT_NEAR(c.spread.value, spread, 3 * c.spread.error);
   // The flume is wider than the image: the rims of beads cut by the border are not side walls.
-  const auto frames = open_frames(folder);
+  const auto frames = imaging::open_frames(folder);
   const CellGeometry g = fit_cell_geometry(read_stack_edges(*frames, false, mean, 1));
   EXPECT_FALSE(g.has_left || g.has_right);
 }

@@ -18,7 +18,7 @@
 #include "imaging/track/locate_stack.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 constexpr int kWidth = 260, kHeight = 240;
@@ -143,4 +143,4 @@ TEST(FlatField, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::imaging

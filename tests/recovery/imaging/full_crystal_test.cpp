@@ -20,7 +20,7 @@
 #include "tests/support/hexagonal_sites.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 using rendered::Disc;
@@ -113,4 +113,4 @@ INSTANTIATE_TEST_SUITE_P(Discs, FullCrystal,
                          });
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -23,7 +23,7 @@
 #include "imaging/benchmark/detection_score.hpp"
 #include "imaging/locate/locator.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 using rendered::Case;
@@ -323,4 +323,4 @@ TEST_F(LocatedCase, TurnedPicturesGiveTurnedResults) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::imaging

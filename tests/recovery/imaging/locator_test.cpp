@@ -14,6 +14,7 @@
 #include "imaging/settings/auto_configuration.hpp"
 
 using namespace twincell;
+using namespace twincell::imaging;
 
 namespace {
 

@@ -25,7 +25,7 @@
 #include "imaging/track/locate_stack.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 using rendered::Disc;
@@ -232,4 +232,4 @@ INSTANTIATE_TEST_SUITE_P(Discs, Looks, testing::ValuesIn(kLooks),
                          [](const auto& look) { return look.param.name; });
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::imaging

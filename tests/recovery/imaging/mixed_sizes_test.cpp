@@ -17,7 +17,7 @@
 #include "imaging/locate/locator.hpp"
 #include "imaging/settings/auto_configuration.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 using rendered::Marks;
@@ -145,4 +145,4 @@ TEST(OneSize, SpreadWideIsLocatedAsTwo) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -16,7 +16,7 @@
 #include "imaging/track/locate_stack.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 using rendered::Marks;
@@ -93,4 +93,4 @@ INSTANTIATE_TEST_SUITE_P(Contrasts, PaleDiscs,
                          });
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::imaging

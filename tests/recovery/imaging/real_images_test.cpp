@@ -15,6 +15,7 @@
 #include "imaging/track/track.hpp"
 
 using namespace twincell;
+using namespace twincell::imaging;
 
 TEST(RealImages, BedloadIsFoundLinkedAndRepeats) {
   const std::filesystem::path folder = TWINCELL_SOURCE_DIR "/../shared/real_images/bedload_left_half";

@@ -14,7 +14,7 @@
 #include "imaging/track/locate_stack.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 using rendered::Disc;
@@ -90,4 +90,4 @@ TEST(ShownLater, OneLargeDiscIsFoundUnasked) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -16,6 +16,7 @@
 #include "trajectory/formats/h5md_file.hpp"
 
 using namespace twincell;
+using namespace twincell::imaging;
 
 namespace {
 

@@ -9,6 +9,7 @@
 #include <random>
 
 using namespace twincell;
+using namespace twincell::imaging;
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include "imaging/locate/locator.hpp"
 #include "imaging/refine/out_of_frame_discs.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 constexpr double kRadius = 7.5;
@@ -102,4 +102,4 @@ TEST(BeyondFrame, ABeadInACornerIsNoWall) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::imaging

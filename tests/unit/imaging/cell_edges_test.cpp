@@ -9,6 +9,7 @@
 #include <vector>
 
 using namespace twincell;
+using namespace twincell::imaging;
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include "imaging/cell/cell.hpp"
 #include "tests/support/key_table_checks.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 const auto kItself = [](const std::string& key) { return key; };
@@ -60,4 +60,4 @@ TEST(CameraKeys, EveryDefaultIsAValueThatIsRead) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -8,6 +8,7 @@
 #include <vector>
 
 using namespace twincell;
+using namespace twincell::imaging;
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include "core/error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 // Ends and middle of viridis as matplotlib lists them (Smith & van der Walt 2015), BGR.
@@ -220,4 +220,4 @@ TEST(Drawing, WrongRequestsAreRefused) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::imaging

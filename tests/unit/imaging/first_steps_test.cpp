@@ -9,7 +9,7 @@
 
 #include "imaging/link/initial_velocities.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 constexpr double kD = 15;
@@ -96,4 +96,4 @@ TEST(FirstSteps, ShortAndEmptyStacksHaveNone) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -10,6 +10,7 @@
 #include "tests/support/hexagonal_sites.hpp"
 
 using namespace twincell;
+using namespace twincell::imaging;
 
 namespace {
 

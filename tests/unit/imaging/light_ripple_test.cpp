@@ -8,7 +8,7 @@
 
 #include "imaging/preprocess/residual_illumination.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 constexpr double kNoise = 0.01;  // standard deviation of a tile's mean
@@ -106,4 +106,4 @@ TEST(LightRipple, GoesNowhereBeyondWhatIsSeen) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::imaging

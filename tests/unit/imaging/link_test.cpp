@@ -13,6 +13,7 @@
 #include "imaging/geometry/pixel_frame.hpp"
 
 using namespace twincell;
+using namespace twincell::imaging;
 
 namespace {
 

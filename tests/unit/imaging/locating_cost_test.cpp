@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <random>
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 LocatePrecision row(int sweeps, double rms, double ms, double recall = 1) {
@@ -94,4 +94,4 @@ TEST(LocatingCost, FitsAreAtTheBoundAndFindersAreNot) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -15,6 +15,7 @@
 #include "imaging/phase/sine_slips.hpp"
 
 using namespace twincell;
+using namespace twincell::imaging;
 
 namespace {
 

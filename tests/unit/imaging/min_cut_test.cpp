@@ -9,6 +9,7 @@
 #include <vector>
 
 using namespace twincell;
+using namespace twincell::imaging;
 
 TEST(MinCut, IsTheCheapestOfAllChoices) {
   // Against all 2^8 choices.

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 constexpr double kRadius = 15, kNoise = 1, kOutside = 2.5;
@@ -123,4 +123,4 @@ TEST(PictureEvidence, NoiseLevelIsThatOfThePicture) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::imaging

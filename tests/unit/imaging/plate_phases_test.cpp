@@ -10,6 +10,7 @@
 #include <vector>
 
 using namespace twincell;
+using namespace twincell::imaging;
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 /// Superposed plain discs, given as (radius, level), with blurred edges.
@@ -67,4 +67,4 @@ TEST(DiscProfile, AFaintRingIsTheRim) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -11,7 +11,7 @@
 #include "imaging/benchmark/packing.hpp"
 #include "imaging/benchmark/picture.hpp"
 
-namespace twincell::rendered {
+namespace twincell::imaging::rendered {
 namespace {
 
 /// The bound with x, y, R and a of all discs free at the same time; derivatives from finite differences of
@@ -100,4 +100,4 @@ TEST(Packing, DepositedDiscsTouchAndDoNotOverlap) {
 }
 
 }  // namespace
-}  // namespace twincell::rendered
+}  // namespace twincell::imaging::rendered

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 TriedSettings tried(double diameter, double evidence, std::size_t beads, std::vector<double> others = {}) {
@@ -56,4 +56,4 @@ TEST(SettingsChoice, RunnerUpHasOtherDiscs) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::imaging

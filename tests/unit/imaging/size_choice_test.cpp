@@ -8,6 +8,7 @@
 #include "imaging/refine/size_assignment.hpp"
 
 using namespace twincell;
+using namespace twincell::imaging;
 
 namespace {
 

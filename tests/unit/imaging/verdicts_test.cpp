@@ -13,7 +13,7 @@
 #include "imaging/refine/judge.hpp"
 #include "imaging/refine/picture_fit.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 Detection good(double x, double y) {
@@ -194,4 +194,4 @@ TEST(Verdict, EachHasAWord) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -116,7 +116,7 @@ TEST(CalibrationFile, ACellTakesWhatItDoesNotState) {
   put_file(folder / "c.toml", calibration_text(some(), ""));
   put_file(folder / "CELL.toml",
            "[camera]\norigin_px = [1.0, 2.0]\n[drive]\nomega = 2.0\n[calibration]\nfrom = \"c.toml\"\n");
-  const CellDescription cell = read_cell(folder / "CELL.toml");
+  const imaging::CellDescription cell = imaging::read_cell(folder / "CELL.toml");
   EXPECT_EQ(cell.pixels_per_sigma, 15.5);
   EXPECT_EQ(cell.phase_lock.frames_per_cycle, 20);
   EXPECT_EQ(cell.drive()->amplitude, 1.25);
@@ -128,7 +128,7 @@ TEST(CalibrationFile, ACellTakesWhatItDoesNotState) {
   put_file(folder / "CELL.toml",
            "[camera]\npixels_per_sigma = 12.0\n[drive]\nomega = 2.0\ngamma = 2.0\n[calibration]\nfrom = "
            "\"c.toml\"\n");
-  const CellDescription stated = read_cell(folder / "CELL.toml");
+  const imaging::CellDescription stated = imaging::read_cell(folder / "CELL.toml");
   EXPECT_EQ(stated.pixels_per_sigma, 12.0);
   EXPECT_EQ(stated.drive()->amplitude, 0.5);
   EXPECT_EQ(stated.included.overridden,
@@ -147,7 +147,7 @@ TEST(CalibrationFile, TheCovarianceHoldsUntilANumberOfItsOwnIsReplaced) {
   put_file(folder / "c.toml", calibration_text(c, ""));
   const auto keeps = [&](const std::string& line) {
     put_file(folder / "CELL.toml", "[camera]\n" + line + "\n[calibration]\nfrom = \"c.toml\"\n");
-    return read_cell(folder / "CELL.toml").included.camera.has_value();
+    return imaging::read_cell(folder / "CELL.toml").included.camera.has_value();
   };
   for (const char* other :
        {"", "phase_offset = 0.1", "frames_per_cycle = 20", "first_phase = 1", "bright = true"})

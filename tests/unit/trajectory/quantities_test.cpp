@@ -14,10 +14,10 @@ using namespace twincell;
 
 namespace {
 
-CellDescription cell_of(const std::string& text) {
+imaging::CellDescription cell_of(const std::string& text) {
   const TemporaryFolder folder;
   put_file(folder / "CELL.toml", text);
-  return read_cell(folder / "CELL.toml");
+  return imaging::read_cell(folder / "CELL.toml");
 }
 
 std::string complaint_of_cell(const std::string& text) {
@@ -38,18 +38,18 @@ void expect_says(const std::string& text, const std::string& part) {
 const std::string kScale = "[scale]\nsigma_mm = 2\ngravity_m_s2 = 9.81\n";
 
 TEST(Quantities, LaboratoryUnitsGiveTheReducedNumbers) {
-  const CellDescription cell = cell_of(
+  const imaging::CellDescription cell = cell_of(
       "[cell]\nwidth_mm = 40\nheight_mm = 80.0\n[drive]\nfrequency_hz = 8\namplitude_mm = 3.2\n" + kScale);
   EXPECT_EQ(cell.scale.sigma_m, 0.002);
   EXPECT_DOUBLE_EQ(*cell.width, 20);
   EXPECT_DOUBLE_EQ(*cell.height, 40);
   EXPECT_DOUBLE_EQ(cell.drive()->amplitude, 1.6);
   EXPECT_NEAR(cell.drive()->omega, 0.717713, 1e-5);
-  const CellDescription speed =
+  const imaging::CellDescription speed =
       cell_of("[drive]\npeak_velocity_mm_s = 140.071\nomega_rad_s = 70.0357\n" + kScale);
   EXPECT_NEAR(speed.drive()->peak_velocity(), 1, 1e-5);
   EXPECT_NEAR(speed.drive()->omega, 1, 1e-5);
-  const CellDescription strength =
+  const imaging::CellDescription strength =
       cell_of("[drive]\npeak_acceleration_m_s2 = 19.62\nomega_per_t0 = 1.0\n" + kScale);
   EXPECT_NEAR(strength.drive()->gamma(), 2, 1e-12);
   EXPECT_EQ(cell_of("[drive]\npeak_acceleration_g = 2.0\nfrequency_hz = 8.0\n" + kScale).drive_spec.gamma,
@@ -110,7 +110,7 @@ TEST(Quantities, ACellIsOverlaidInAnySpelling) {
   const TemporaryFolder folder;
   put_file(folder / "CELL.toml", "[cell]\nwidth_mm = 30\n" + kScale);
   const auto width = [&](const std::vector<std::string>& assignments) {
-    return read_cell(folder / "CELL.toml", assignments).width;
+    return imaging::read_cell(folder / "CELL.toml", assignments).width;
   };
   EXPECT_DOUBLE_EQ(*width({"cell.width_mm=40"}), 20);
   EXPECT_DOUBLE_EQ(*width({"cell.width_sigma=20"}), 20);
@@ -120,8 +120,8 @@ TEST(Quantities, ACellIsOverlaidInAnySpelling) {
         (void)width({"cell.width_mm=40", "cell.width_sigma=20"});
       },
       "give only one of the two");
-  EXPECT_EQ(read_cell("", {"camera.frame_rate_hz=1000"}).frame_rate_hz, 1000);
-  expect_refusal<ConfigError>([&] { (void)read_cell("", {"camera.frame_rate_hz=0"}); },
+  EXPECT_EQ(imaging::read_cell("", {"camera.frame_rate_hz=1000"}).frame_rate_hz, 1000);
+  expect_refusal<ConfigError>([&] { (void)imaging::read_cell("", {"camera.frame_rate_hz=0"}); },
                               "camera.frame_rate_hz", "greater than 0");
 }
 

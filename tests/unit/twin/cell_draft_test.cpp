@@ -49,10 +49,10 @@ const DraftKey& key(const CellDraft& draft, const std::string& name) {
   return k != nullptr ? *k : none;
 }
 
-CellDescription read(const CellDraft& draft, const CellSurvey& s) {
+imaging::CellDescription read(const CellDraft& draft, const CellSurvey& s) {
   const TemporaryFolder folder;
   put_file(folder / "CELL.toml", cell_text(draft, s, "# test"));
-  return read_cell(folder / "CELL.toml");
+  return imaging::read_cell(folder / "CELL.toml");
 }
 
 TEST(CellDraft, ErrorsHaveTwoDigitsAndValuesAsManyDecimals) {
@@ -73,7 +73,7 @@ TEST(CellDraft, AFrequencyAndADiameterGiveGammaWithItsError) {
   EXPECT_NEAR(draft.gamma->value, gamma, 1e-9);
   // Relative errors: 0.004/18 of the plate and 0.006/12 of the scale.
   EXPECT_NEAR(draft.gamma->error / gamma, std::hypot(0.004 / 18, 0.006 / 12), 1e-9);
-  const CellDescription cell = read(draft, s);
+  const imaging::CellDescription cell = read(draft, s);
   EXPECT_NEAR(cell.drive()->gamma(), gamma, 1e-3 * gamma);
   EXPECT_DOUBLE_EQ(*cell.pixels_per_sigma, 12);
   EXPECT_DOUBLE_EQ(*cell.width, 10);
@@ -105,7 +105,7 @@ TEST(CellDraft, GammaAloneNeedsNoLaboratoryScale) {
   const CellSurvey s = survey();
   const CellDraft draft = draft_cell(s, {.gamma = 1.5});
   EXPECT_EQ(draft.find("scale.sigma_mm"), nullptr);
-  const CellDescription cell = read(draft, s);
+  const imaging::CellDescription cell = read(draft, s);
   EXPECT_DOUBLE_EQ(cell.drive()->amplitude, 1.5);
   EXPECT_NEAR(cell.drive()->omega, 1, 1e-12);  // Gamma = A omega^2
 }

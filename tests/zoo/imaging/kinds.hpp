@@ -21,7 +21,7 @@ namespace twincell::zoo {
 /// A picture with its truth.
 struct Exhibit {
   cv::Mat1b picture;
-  std::vector<TruthBead> truth;
+  std::vector<imaging::TruthBead> truth;
 };
 
 struct Place {
@@ -34,9 +34,9 @@ inline int side_of(double diameter) {
   return std::clamp(static_cast<int>(17 * diameter), 200, 500);
 }
 
-inline Places places_of(const std::vector<rendered::Disc>& discs) {
+inline Places places_of(const std::vector<imaging::rendered::Disc>& discs) {
   Places places;
-  for (const rendered::Disc& d : discs) places.push_back({d.x, d.y, d.radius});
+  for (const imaging::rendered::Disc& d : discs) places.push_back({d.x, d.y, d.radius});
   return places;
 }
 
@@ -45,7 +45,8 @@ inline Places at_rest(double diameter, const cv::Rect2d& room, double filled, st
   std::mt19937_64 random(seed);
   const auto n = static_cast<std::size_t>(filled * 1.02 * room.area() / (diameter * diameter));
   Places places;
-  for (const Place& p : places_of(rendered::deposited(std::vector<double>(n, 0.5 * diameter), room, random)))
+  for (const Place& p :
+       places_of(imaging::rendered::deposited(std::vector<double>(n, 0.5 * diameter), room, random)))
     if (p.y - p.radius > room.y) places.push_back(p);
   return places;
 }
@@ -54,13 +55,13 @@ inline Places at_rest(double diameter, const cv::Rect2d& room, double filled, st
 inline Places apart(double diameter, const cv::Rect2d& room, double pitch, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto n = static_cast<std::size_t>(room.area() / (pitch * pitch * diameter * diameter));
-  return places_of(rendered::sparse(std::vector<double>(n, 0.5 * diameter), room, random));
+  return places_of(imaging::rendered::sparse(std::vector<double>(n, 0.5 * diameter), room, random));
 }
 
 /// Grains of a crystal with contacts.
 inline Places crystal(double diameter, const cv::Rect2d& room, std::size_t count, std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  return places_of(rendered::hexagonal(count, 0.5 * diameter, room, random));
+  return places_of(imaging::rendered::hexagonal(count, 0.5 * diameter, room, random));
 }
 
 /// The picture without a margin on every side, px.
@@ -68,8 +69,8 @@ inline cv::Rect2d inner(int side, double margin) {
   return {margin, margin, side - 2 * margin, side - 2 * margin};
 }
 
-inline std::vector<TruthBead> truth_of(const Places& places) {
-  std::vector<TruthBead> truth;
+inline std::vector<imaging::TruthBead> truth_of(const Places& places) {
+  std::vector<imaging::TruthBead> truth;
   for (const Place& p : places) truth.push_back({-1, p.x, p.y, p.radius, 0, true});
   return truth;
 }
@@ -180,8 +181,8 @@ inline Exhibit two_layers(double d) {
   const Places behind = apart(d, inner(canvas.side(), 0.9 * d), 1.9, 71);
   places.insert(places.end(), behind.begin(), behind.end());
   paint_opaque(canvas, places);
-  std::vector<TruthBead> truth = truth_of(places);
-  for (TruthBead& b : truth) {
+  std::vector<imaging::TruthBead> truth = truth_of(places);
+  for (imaging::TruthBead& b : truth) {
     constexpr int kDirections = 180;
     int free = 0;
     for (int k = 0; k < kDirections; ++k) {

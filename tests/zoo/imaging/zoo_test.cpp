@@ -49,7 +49,7 @@ const std::map<std::string, std::array<Mark, 4>> kMarks = {
 };
 
 /// A stack of one picture in memory.
-class OnePicture : public FrameSource {
+class OnePicture : public imaging::FrameSource {
  public:
   explicit OnePicture(cv::Mat picture) : picture_(std::move(picture)) {}
   bool next(cv::Mat& frame) override {
@@ -65,7 +65,7 @@ class OnePicture : public FrameSource {
 };
 
 struct Seen {
-  Score score;
+  imaging::Score score;
   std::size_t tracers = 0;
   std::string settings;  // or the refusal
   bool refused = false;
@@ -73,29 +73,31 @@ struct Seen {
 
 Seen look(const Exhibit& exhibit, const std::string& keep) {
   OnePicture stack(exhibit.picture);
-  FramesAhead ahead(stack);
-  LocatorOptions open;
+  imaging::FramesAhead ahead(stack);
+  imaging::LocatorOptions open;
   open.polarity_known = false;
   Seen seen;
-  Scorer scorer;
-  std::vector<FoundBead> found;
+  imaging::Scorer scorer;
+  std::vector<imaging::FoundBead> found;
   try {
-    const LocatorOptions settled = configure_locator(ahead, open).locator;
+    const imaging::LocatorOptions settled = imaging::configure_locator(ahead, open).locator;
     seen.settings = fmt::format("{} {} {:.1f}", settled.refine.method,
                                 settled.preprocess.bright ? "bright" : "dark", settled.diameter_px);
     for (const double other : settled.other_diameters_px) seen.settings += fmt::format(" {:.1f}", other);
-    locate_stack(ahead, settled, 1, [&](std::int64_t, const cv::Mat& grey, const Located& located) {
-      for (const Detection& b : located.beads) {
-        found.push_back({b.x, b.y, -1});
-        seen.tracers += b.tracer ? 1 : 0;
-      }
-      if (!keep.empty()) write_overlay(keep + ".overlay.png", grey, located.beads);
-    });
+    imaging::locate_stack(ahead, settled, 1,
+                          [&](std::int64_t, const cv::Mat& grey, const imaging::Located& located) {
+                            for (const imaging::Detection& b : located.beads) {
+                              found.push_back({b.x, b.y, -1});
+                              seen.tracers += b.tracer ? 1 : 0;
+                            }
+                            if (!keep.empty())
+                              imaging::write_overlay(keep + ".overlay.png", grey, located.beads);
+                          });
   } catch (const InputError& e) {
     seen.refused = true;
     seen.settings = std::string("refused: ") + e.what();
   }
-  if (!keep.empty()) write_png(keep + ".png", exhibit.picture);
+  if (!keep.empty()) imaging::write_png(keep + ".png", exhibit.picture);
   scorer.add(exhibit.truth, found);
   seen.score = scorer.score();
   return seen;
@@ -120,7 +122,7 @@ TEST(Zoo, IsLocatedWithoutOptions) {
   });
   std::size_t good = 0;
   for (const Job& job : jobs) {
-    const Score& s = job.seen.score;
+    const imaging::Score& s = job.seen.score;
     const bool passes = s.recall() >= kGoal && s.precision() >= kGoal;
     good += passes ? 1 : 0;
     std::printf("%-13s %2g px: %3zu beads, recall %.3f, precision %.3f, rms %.3f px, %zu tracers; %s%s\n",
