@@ -122,8 +122,10 @@ void survey_plate(CellSurvey& s) {
     s.drive = calibration::fit_drive(
         heights, {.frames_per_cycle = 0, .mend = true, .model_error = calibration::kHeightModelError_px});
   } catch (const InputError& e) {
-    s.missing.push_back({"the plate's motion", e.what(),
-                         "give at least one whole cycle of frames, or state the drive by hand"});
+    std::string why = e.what();
+    while (why.ends_with('.')) why.pop_back();
+    s.missing.push_back(
+        {"the plate's motion", why, "give at least one whole cycle of frames, or state the drive by hand"});
     // Without a cycle, the row is the mean height only if the plate does not move.
     const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
     if (heights.size() < 2 || !(*high - *low < 1)) s.plate_row.reset();

@@ -357,9 +357,9 @@ Timed first_attempt(const std::vector<double>& heights, int frames_per_cycle) {
   std::vector<Sample> samples = samples_of(heights, out.ticks);
   if (samples.size() < kFewest)
     throw InputError(
-        {.file = {}, .key = "plate"},
-        fmt::format("is seen in {} of {} frames; at least {} are needed for amplitude, period and phase.",
-                    samples.size(), heights.size(), kFewest));
+        {}, fmt::format("the plate is seen in {} of {} frames; at least {} are needed for amplitude, period "
+                        "and phase.",
+                        samples.size(), heights.size(), kFewest));
   const double omega = frames_per_cycle > 0 ? 2 * kPi / frames_per_cycle : search_omega(samples);
   out.attempt = attempt(std::move(samples), omega);
   return out;
