@@ -226,7 +226,9 @@ std::string LocateView::page(const std::string& stack, const std::string& output
           "<tr{}><td>{:.0f}</td><td>{:.3f}</td><td>{}</td><td><code>{}</code>{}</td></tr>\n",
           index_of_[k] < stored_.size() ? fmt::format(" data-set=\"{}\"", index_of_[k]) : std::string(),
           t.evidence, t.evidence / most, t.beads, html_text(options_of(t.settings, refine)),
-          k == 0 ? " (chosen)" : "");
+          k == 0                 ? " (chosen)"
+          : t.not_chosen.empty() ? ""
+                                 : " (" + html_text(t.not_chosen) + ")");
     }
     html +=
         "</tbody></table></div>\n<p class=\"quiet needs-script\">A click on a row shows its candidates, "

@@ -25,7 +25,10 @@ std::string settings_table(const imaging::SettingsChoice& choice, const std::str
   std::string text = "evidence/nats   share  beads  settings\n";
   for (const imaging::TriedSettings& t : choice.tried)
     text += fmt::format("{:13.0f}  {:6.3f}  {:5}  {}{}\n", t.evidence, t.evidence / most, t.beads,
-                        options_of(t.settings, refine), &t == &choice.tried.front() ? "  (chosen)" : "");
+                        options_of(t.settings, refine),
+                        &t == &choice.tried.front() ? "  (chosen)"
+                        : t.not_chosen.empty()      ? ""
+                                                    : "  (" + t.not_chosen + ")");
   return text + settings_lead(choice, refine);
 }
 
@@ -35,10 +38,8 @@ std::string settings_lead(const imaging::SettingsChoice& choice, const std::stri
   const double lead = choice.tried.front().evidence - choice.tried[k].evidence;
   const std::string other = options_of(choice.tried[k].settings, refine);
   if (lead < 0)
-    return fmt::format(
-        "the best settings with other discs have {:.0f} nats more, less than the factor {:g} at which they "
-        "replace the preferred ones: {}\n",
-        -lead, imaging::kClearly, other);
+    return fmt::format("the best settings with other discs have {:.0f} nats more, but {}: {}\n", -lead,
+                       choice.tried[k].not_chosen, other);
   return fmt::format("the best settings with other discs have {:.0f} nats less: {}\n", lead, other);
 }
 
@@ -55,6 +56,8 @@ nlohmann::json settings_as_json(const imaging::SettingsChoice& choice, const std
     list.push_back({{"options", options_of(t.settings, refine)},
                     {"evidence", t.evidence},
                     {"beads", t.beads},
+                    {"rim_variation", t.rim_variation},
+                    {"not_chosen", t.not_chosen},
                     {"chosen", &t == &choice.tried.front()}});
   return list;
 }

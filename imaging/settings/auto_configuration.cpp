@@ -283,7 +283,9 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   if (given.diameter_px > 0 || model_of(given.refine) != DiscModel::plain) return choice;
   if (choice.tried.empty() && one_size && given.refine.method == kExactRefiner.word) {
     region.neighbour_radius_px = kSmallestRadius;
+    const double not_round = choice.not_round;
     choice = confirmed(region, given, try_settings(region, given, small_profiles(grey, given)));
+    choice.not_round = std::max(choice.not_round, not_round);
   }
   if (choice.tried.empty()) return choice;
   // The size of the winner, by its rims alone and with further sizes.

@@ -1,10 +1,13 @@
 #include "imaging/settings/configure_locator.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <utility>
 
 #include "core/error.hpp"
+#include "imaging/refine/rim_variation.hpp"
 #include "imaging/settings/auto_configuration.hpp"
 #include "imaging/settings/find_contrast.hpp"
 #include "imaging/settings/settings_choice.hpp"
@@ -26,11 +29,13 @@ bool is_blank(const cv::Mat& frame) {
 LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given) {
   constexpr std::size_t kLast = 32;
   std::optional<LocatorOptions> first;  // first settings found, even if they locate no bead
+  double not_round = 0;                 // rim variation of other objects
   for (std::size_t k = 0; k <= kLast; k = std::max<std::size_t>(2 * k, k + 1)) {
     const cv::Mat* frame = frames.look(k);
     if (frame == nullptr) break;
     if (is_blank(*frame)) continue;
     SettingsChoice choice = choose_settings(*frame, given);
+    not_round = std::max(not_round, choice.not_round);
     if (choice.tried.empty()) continue;
     LocatorOptions settled = completed(choice.tried.front().settings, given);
     if (model_of(settled.refine) == DiscModel::circle)
@@ -39,6 +44,13 @@ LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given) {
     if (locate(*frame, settled).beads.empty()) continue;
     return {settled, static_cast<std::int64_t>(k), std::move(choice)};
   }
+  if (!first && given.diameter_px <= 0 && not_round > 0)
+    throw InputError(
+        Where{.file = frames.source().current(), .key = {}},
+        fmt::format("shows no discs: what stands out is not round (its rims vary by {:.2f} with the "
+                    "direction, those of beads by at most {:g}); if it shows beads, give their "
+                    "diameter with --diameter.",
+                    not_round, kMostRimVariation));
   if (!first && given.diameter_px <= 0)
     throw InputError(
         Where{.file = frames.source().current(), .key = {}},

@@ -23,12 +23,17 @@ struct TriedSettings {
   FoundSettings settings;
   double evidence = 0;    ///< of the picture for the discs located with them, nats (picture_evidence.hpp)
   std::size_t beads = 0;  ///< discs located with them
+  double rim_variation =
+      0;                   ///< of these discs (rim_variation.hpp); they are not round above kMostRimVariation
+  std::string not_chosen;  ///< why others with less evidence were chosen, in words; empty: they were not
 };
 
 /// All settings that were tried, and the best of them.
 struct SettingsChoice {
   std::vector<TriedSettings> tried;  ///< the chosen ones first, the others by evidence; empty: none explains
                                      ///< anything
+  double not_round = 0;              ///< if empty: the rim variation of what explains the most but is not
+                                     ///< round; 0: nothing does
 };
 
 }  // namespace twincell::imaging

@@ -1,10 +1,13 @@
 #include "imaging/settings/settings_choice.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "imaging/refine/picture_evidence.hpp"
 #include "imaging/refine/profile_fit.hpp"
+#include "imaging/refine/rim_variation.hpp"
 #include "imaging/settings/find_contrast.hpp"
 
 namespace twincell::imaging {
@@ -49,8 +52,22 @@ TriedSettings try_one(const ExaminedRegion& region, const LocatorOptions& given,
   const std::vector<Detection> beads = locate(region.picture, options).beads;
   std::vector<double> radii = {0.5 * options.diameter_px};
   for (const double d : options.other_diameters_px) radii.push_back(0.5 * d);
-  return {settings, picture_evidence(region.picture, beads, radii, region.neighbour_radius_px).total,
-          beads.size()};
+  TriedSettings tried{settings,
+                      picture_evidence(region.picture, beads, radii, region.neighbour_radius_px).total,
+                      beads.size()};
+  // A stated size is that of round objects. Rims of patterned discs vary with direction.
+  if (given.diameter_px <= 0 && model_of(options.refine) != DiscModel::circle)
+    tried.rim_variation = rim_variation(region.picture, beads);
+  return tried;
+}
+
+bool is_round(const TriedSettings& tried) {
+  return tried.rim_variation <= kMostRimVariation;
+}
+
+bool explains(const TriedSettings& tried) {
+  constexpr double kLeastShare = 5;  // nats a disc: odds of 150 that it is one
+  return tried.evidence > 0 && tried.evidence >= kLeastShare * static_cast<double>(tried.beads);
 }
 
 }  // namespace
@@ -82,28 +99,40 @@ std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const Loca
 
 SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
   constexpr double kDiscs = 3, kTimesArea = 2;
-  constexpr double kLeastShare = 5;  // nats a disc: odds of 150 that it is one
   const auto sizes = [](const TriedSettings& t) { return t.settings.other_diameters_px.size(); };
-  const auto best = std::max_element(tried.begin(), tried.end(),
-                                     [](const auto& a, const auto& b) { return a.evidence < b.evidence; });
-  if (best == tried.end() || best->evidence <= 0 ||
-      best->evidence < kLeastShare * static_cast<double>(best->beads))
-    return {};
+  const auto less = [](const auto& a, const auto& b) { return a.evidence < b.evidence; };
+  for (TriedSettings& t : tried)
+    t.not_chosen = is_round(t) ? "" : fmt::format("not round: rim variation {:.2f}", t.rim_variation);
+  // Preferred ones first, then those that are not round.
+  const auto end = std::stable_partition(tried.begin(), tried.end(), is_round);
+  const auto best = std::max_element(tried.begin(), end, less);
+  if (best == end || !explains(*best)) {
+    const auto other = std::max_element(end, tried.end(), less);
+    return {{}, other != tried.end() && explains(*other) ? other->rim_variation : 0};
+  }
   const double share = best->evidence / static_cast<double>(best->beads);
   auto chosen = best;
   const auto first = tried.begin();
-  if (first->evidence > 0 && sizes(*first) <= sizes(*best)) {
+  std::string reason;
+  if (first->evidence > 0 && sizes(*first) <= sizes(*best) && first != best) {
     // Marks on the ground may be discs too, and more of them than there are beads.
-    const bool covers_more = area_of(*first) > kTimesArea * area_of(*best);
-    const bool suffices = sizes(*first) < sizes(*best)
-                              ? first->evidence > best->evidence - kDiscs * share
-                              : covers_more || clearly * first->evidence > best->evidence;
-    if (suffices) chosen = first;
+    if (sizes(*first) < sizes(*best)) {
+      if (first->evidence > best->evidence - kDiscs * share)
+        reason = "a further size gains less than three discs";
+    } else if (std::isinf(clearly)) {
+      reason = "the gaps of a crystal are as alike as its discs";
+    } else if (clearly * first->evidence > best->evidence) {
+      reason = fmt::format("less than {:g} times the evidence of the preferred ones", clearly);
+    } else if (area_of(*first) > kTimesArea * area_of(*best)) {
+      reason = "less than half of the area of the preferred ones";
+    }
+    if (!reason.empty()) chosen = first;
   }
+  for (auto t = tried.begin(); t != end; ++t)
+    if (t->evidence > chosen->evidence) t->not_chosen = reason;
   SettingsChoice choice{{*chosen}};
   tried.erase(chosen);
-  std::stable_sort(tried.begin(), tried.end(),
-                   [](const auto& a, const auto& b) { return a.evidence > b.evidence; });
+  std::stable_sort(tried.begin(), tried.end(), [&](const auto& a, const auto& b) { return less(b, a); });
   choice.tried.insert(choice.tried.end(), tried.begin(), tried.end());
   return choice;
 }
@@ -117,7 +146,7 @@ SettingsChoice confirmed(const ExaminedRegion& region, const LocatorOptions& giv
     const double before = first.evidence;
     first = try_one(region, given, first.settings, given.refine.sweeps);
     constexpr double kKept = 0.9;
-    if (first.evidence >= kKept * before) break;
+    if (first.evidence >= kKept * before && is_round(first)) break;
     choice = choose(std::move(choice.tried), region.clearly);
     if (choice.tried.empty()) break;
   }
@@ -128,6 +157,7 @@ std::size_t runner_up(const SettingsChoice& choice) {
   constexpr double kOtherSize = 0.1, kOtherNumber = 0.05;
   for (std::size_t k = 1; k < choice.tried.size(); ++k) {
     const TriedSettings &first = choice.tried.front(), &other = choice.tried[k];
+    if (!is_round(other)) continue;
     const double difference = std::abs(static_cast<double>(other.beads) - static_cast<double>(first.beads));
     if (difference > kOtherNumber * static_cast<double>(first.beads)) return k;
     // A profile has no rim: with another diameter it describes the same discs.

@@ -34,8 +34,11 @@ std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const Loca
 /// first in the list, which are preferred, suffice: those with as many sizes must have 1.25 times their
 /// evidence and at least half of the area of their discs, and those with further sizes must gain the share of
 /// three discs. The evidence knows neither that gaps of a crystal are not discs nor which fit is the most
-/// accurate; the order of the list does. \param tried the preferred ones first; those without positive
-/// evidence are never chosen \returns empty if the largest evidence is below 5 nats a disc
+/// accurate; the order of the list does. Settings whose discs are not round (rim_variation.hpp) are never
+/// chosen. Each of the others that has more evidence than the chosen ones, or is not round, says why it was
+/// not chosen. \param tried the preferred ones first; those without positive evidence are never chosen
+/// \param clearly the factor 1.25; infinite: the preferred ones suffice \returns empty if the largest
+/// evidence of round discs is below 5 nats a disc
 SettingsChoice choose(std::vector<TriedSettings> tried, double clearly = kClearly);
 
 /// Chooses, then fits the region with the chosen settings in full: a fit that was cut short may hold discs

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -13,7 +14,7 @@ TriedSettings tried(double diameter, double evidence, std::size_t beads, std::ve
   FoundSettings settings;
   settings.diameter_px = diameter;
   settings.other_diameters_px = std::move(others);
-  return {settings, evidence, beads};
+  return {settings, evidence, beads, 0, {}};
 }
 
 double chosen(std::vector<TriedSettings> all) {
@@ -39,6 +40,36 @@ TEST(SettingsChoice, AFurtherSizeMustGain) {
                 .tried[0]
                 .settings.other_diameters_px.size(),
             1U);
+}
+
+// What is not round is never chosen, however much it explains, and no other discs are its runner-up.
+TEST(SettingsChoice, OnlyRoundDiscsAreChosen) {
+  TriedSettings squares = tried(10, 5000, 10);
+  squares.rim_variation = 0.09;
+  EXPECT_EQ(chosen({squares, tried(20, 100, 5), tried(30, 90, 5)}), 20);
+  const SettingsChoice choice = choose({squares, tried(20, 100, 5)});
+  EXPECT_EQ(choice.tried[1].not_chosen, "not round: rim variation 0.09");
+  EXPECT_EQ(runner_up(choice), 0U);
+  EXPECT_EQ(choice.not_round, 0);
+  const SettingsChoice none = choose({squares, tried(20, 10, 5)});
+  EXPECT_TRUE(none.tried.empty());
+  EXPECT_EQ(none.not_round, 0.09);
+  squares.evidence = 40;  // 4 nats a disc: no sign of anything
+  EXPECT_EQ(choose({squares}).not_round, 0);
+}
+
+// Settings with more evidence than the chosen ones say why they were not chosen, and only they do.
+TEST(SettingsChoice, MoreEvidenceIsExplained) {
+  const auto reason = [](const SettingsChoice& choice) { return choice.tried.at(1).not_chosen; };
+  EXPECT_EQ(reason(choose({tried(10, 1000, 10), tried(20, 1240, 5)})),
+            "less than 1.25 times the evidence of the preferred ones");
+  EXPECT_EQ(reason(choose({tried(10, 1000, 100), tried(20, 9000, 50)}, HUGE_VAL)),
+            "the gaps of a crystal are as alike as its discs");
+  EXPECT_EQ(reason(choose({tried(40, 1000, 100), tried(10, 9000, 300)})),
+            "less than half of the area of the preferred ones");
+  EXPECT_EQ(reason(choose({tried(10, 10000, 100), tried(10, 10290, 105, {14})})),
+            "a further size gains less than three discs");
+  EXPECT_EQ(reason(choose({tried(10, 1000, 10), tried(20, 900, 5)})), "");
 }
 
 TEST(SettingsChoice, RunnerUpHasOtherDiscs) {

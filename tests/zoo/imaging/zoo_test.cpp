@@ -29,18 +29,19 @@ constexpr double kSame = 0.005;  // a bead or two: compilers round differently
 constexpr std::array kDiameters = {8.0, 14.0, 20.0, 40.0};
 
 /// What was reached in a picture of each of kDiameters. Both above kGoal: the picture passes, and must not
-/// get worse. Otherwise it fails, and the mark must be changed when it passes.
+/// get worse. Otherwise it fails, and the mark must be changed when it passes. Recall 0, precision 1: it is
+/// refused.
 struct Mark {
   double recall, precision, rms_px;
 };
 const std::map<std::string, std::array<Mark, 4>> kMarks = {
     {"opaque", {{{1, 1, 0.014}, {1, 1, 0.01}, {1, 1, 0.008}, {1, 1, 0.005}}}},
-    {"translucent", {{{0.073, 1, 0}, {1, 1, 0.015}, {1, 1, 0.01}, {1, 1, 0.005}}}},
+    {"translucent", {{{1, 1, 0.029}, {1, 1, 0.015}, {1, 1, 0.01}, {1, 1, 0.005}}}},
     {"clear", {{{1, 1, 0.012}, {1, 1, 0.008}, {1, 1, 0.007}, {1, 1, 0.004}}}},
     {"steel", {{{1, 1, 0.554}, {1, 1, 0.674}, {1, 1, 0.693}, {1, 1, 0.794}}}},
-    {"photoelastic", {{{0, 1, 0}, {0.586, 1, 0.203}, {0.688, 1, 0.207}, {1, 1, 0.027}}}},
+    {"photoelastic", {{{0, 1, 0}, {0, 1, 0}, {0, 1, 0}, {1, 1, 0.027}}}},
     {"fluorescent", {{{1, 1, 0.011}, {1, 1, 0.011}, {1, 1, 0.007}, {1, 1, 0.005}}}},
-    {"two layers", {{{0.848, 1, 0.162}, {0.862, 0.824, 0.853}, {0.731, 1, 0.325}, {0.868, 0.979, 2.391}}}},
+    {"two layers", {{{0.848, 1, 0.162}, {0.862, 0.824, 0.853}, {0.731, 1, 0.325}, {0, 1, 0}}}},
     {"water line", {{{1, 1, 0.02}, {1, 1, 0.013}, {1, 1, 0.01}, {1, 1, 0.006}}}},
     {"round cell", {{{1, 1, 0.02}, {1, 1, 0.018}, {1, 1, 0.012}, {1, 1, 0.006}}}},
     {"ruler, text", {{{1, 0.994, 0.017}, {1, 1, 0.013}, {1, 1, 0.01}, {1, 1, 0.009}}}},
@@ -120,14 +121,18 @@ TEST(Zoo, IsLocatedWithoutOptions) {
     std::replace(file.begin(), file.end(), ' ', '_');
     job.seen = look(job.kind->make(job.diameter), keep != nullptr ? std::string(keep) + "/" + file : "");
   });
-  std::size_t good = 0;
+  std::size_t good = 0, refused = 0;
   for (const Job& job : jobs) {
     const imaging::Score& s = job.seen.score;
     const bool passes = s.recall() >= kGoal && s.precision() >= kGoal;
     good += passes ? 1 : 0;
+    refused += job.seen.refused ? 1 : 0;
     std::printf("%-13s %2g px: %3zu beads, recall %.3f, precision %.3f, rms %.3f px, %zu tracers; %s%s\n",
                 job.kind->name.c_str(), job.diameter, s.truths, s.recall(), s.precision(), s.rms,
-                job.seen.tracers, job.seen.settings.c_str(), passes ? "" : "  FAILS");
+                job.seen.tracers, job.seen.settings.c_str(),
+                passes             ? ""
+                : job.seen.refused ? "  REFUSED"
+                                   : "  FAILS");
     SCOPED_TRACE(fmt::format("{}, {} px", job.kind->name, job.diameter));
     const auto size = static_cast<std::size_t>(std::find(kDiameters.begin(), kDiameters.end(), job.diameter) -
                                                kDiameters.begin());
@@ -141,8 +146,10 @@ TEST(Zoo, IsLocatedWithoutOptions) {
     EXPECT_GE(s.rms, 0.9 * mark.rms_px - 0.001);
   }
   std::printf(
-      "recall and precision of at least %g in %zu of %zu pictures (goal: 46); %.0f s of processor time\n",
-      kGoal, good, jobs.size(), static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+      "recall and precision of at least %g in %zu of %zu pictures (goal: 46), %zu refused; %.0f s of "
+      "processor "
+      "time\n",
+      kGoal, good, jobs.size(), refused, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
 }
 
 }  // namespace

@@ -1,0 +1,141 @@
+#include "imaging/refine/rim_variation.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <utility>
+
+#include "core/median.hpp"
+#include "imaging/refine/picture_evidence.hpp"
+#include "imaging/refine/sparse_gauss_newton.hpp"
+
+namespace twincell {
+
+namespace {
+
+constexpr int kDirections = 24, kTimes = 3;  // kTimes samples are averaged for each direction
+constexpr int kSteps = 13;                   // samples along the radius
+constexpr double kWidth = 0.35, kLeastWidth = 2, kMostWidth = 6;  // of R; px
+constexpr double kApart = 1.5;                                    // px from the rims of other discs
+constexpr int kLeastDirections = kDirections / 3;
+constexpr double kNoise = 0.35;  // variance of a mean of kTimes interpolated samples, in variances of a pixel
+
+double width_of(const Detection& d) {
+  return std::clamp(kWidth * d.radius, kLeastWidth, kMostWidth);
+}
+
+using Levels = Eigen::Matrix<double, Eigen::Dynamic, kSteps>;
+
+/// What of the rim of a disc does not depend on r alone, in units of the scatter along the radius.
+struct Rim {
+  std::vector<double> turns;  // the directions in which it is seen
+  Levels rest;                // a row for each
+  double noise = 0;           // variance of the noise
+};
+
+double interpolated(const cv::Mat1f& grey, double x, double y) {
+  const int i = std::min(static_cast<int>(x), grey.cols - 2),
+            j = std::min(static_cast<int>(y), grey.rows - 2);
+  const double u = x - i, v = y - j;
+  return (1 - v) * ((1 - u) * static_cast<double>(grey(j, i)) + u * static_cast<double>(grey(j, i + 1))) +
+         v * ((1 - u) * static_cast<double>(grey(j + 1, i)) + u * static_cast<double>(grey(j + 1, i + 1)));
+}
+
+/// The rim of a disc. \param others discs that may hide parts of it
+Rim rim_of(const cv::Mat1f& grey, const Detection& d, const std::vector<const Detection*>& others,
+           double noise) {
+  const double width = width_of(d);
+  const auto at = [&](int step) { return d.radius + width * (2.0 * step / (kSteps - 1) - 1); };
+  Rim rim;
+  std::vector<std::array<double, kSteps>> levels;
+  for (int k = 0; k < kDirections; ++k) {
+    std::array<double, kSteps> sum{};
+    bool seen = true;
+    for (int t = 0; t < kTimes && seen; ++t) {
+      const double turn = 2 * std::numbers::pi * (k * kTimes + t + 0.5) / (kDirections * kTimes);
+      for (int step = 0; step < kSteps && seen; ++step) {
+        const double x = d.x + at(step) * std::cos(turn), y = d.y + at(step) * std::sin(turn);
+        seen = x >= 0 && y >= 0 && x <= grey.cols - 1 && y <= grey.rows - 1 &&
+               std::none_of(others.begin(), others.end(), [&](const Detection* o) {
+                 return std::hypot(x - o->x, y - o->y) < o->radius + kApart;
+               });
+        if (seen) sum[static_cast<std::size_t>(step)] += interpolated(grey, x, y) / kTimes;
+      }
+    }
+    if (!seen) continue;
+    rim.turns.push_back(2 * std::numbers::pi * (k + 0.5) / kDirections);
+    levels.push_back(sum);
+  }
+  const auto n = static_cast<Eigen::Index>(levels.size());
+  if (n < kLeastDirections) return {};
+  Eigen::Matrix<double, Eigen::Dynamic, 3> first(n, 3);
+  rim.rest.resize(n, kSteps);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    first.row(k) << 1, std::cos(rim.turns[row]), std::sin(rim.turns[row]);
+    rim.rest.row(k) = Eigen::Map<const Eigen::Matrix<double, 1, kSteps>>(levels[row].data());
+    rim.rest.row(k).array() -= rim.rest.row(k).mean();
+  }
+  const double scatter = rim.rest.colwise().mean().squaredNorm() / kSteps;
+  if (scatter <= 0) return {};
+  rim.rest -= first * first.colPivHouseholderQr().solve(rim.rest).eval();
+  rim.rest /= std::sqrt(scatter);
+  rim.noise = kNoise * noise * noise / scatter;
+  return rim;
+}
+
+/// Subtracts what varies with a function of the direction alike in all discs.
+template <class Function>
+void subtract_common(std::vector<Rim>& rims, Function&& of) {
+  Eigen::Matrix<double, 1, kSteps> sum = Eigen::Matrix<double, 1, kSteps>::Zero();
+  double squares = 0;
+  for (const Rim& rim : rims)
+    for (std::size_t k = 0; k < rim.turns.size(); ++k) {
+      const double f = of(rim.turns[k]);
+      sum += f * rim.rest.row(static_cast<Eigen::Index>(k));
+      squares += f * f;
+    }
+  if (squares <= 0) return;
+  for (Rim& rim : rims)
+    for (std::size_t k = 0; k < rim.turns.size(); ++k)
+      rim.rest.row(static_cast<Eigen::Index>(k)) -= of(rim.turns[k]) / squares * sum;
+}
+
+}  // namespace
+
+double rim_variation(const cv::Mat& grey, const std::vector<Detection>& discs) {
+  constexpr std::size_t kEnough = 3;  // discs that show what they have in common
+  if (std::min(grey.cols, grey.rows) < 2) return 0;
+  cv::Mat1f levels;
+  grey.convertTo(levels, CV_32F);
+  const double noise = noise_level(levels);
+  std::vector<Disc> places;
+  places.reserve(discs.size());
+  for (const Detection& d : discs) places.push_back({d.x, d.y, d.radius, 1});
+  std::vector<std::vector<const Detection*>> others(discs.size());
+  for (const auto& [i, j] : near_pairs(places, kMostWidth + kApart)) {
+    others[static_cast<std::size_t>(i)].push_back(&discs[static_cast<std::size_t>(j)]);
+    others[static_cast<std::size_t>(j)].push_back(&discs[static_cast<std::size_t>(i)]);
+  }
+  std::vector<Rim> rims;
+  for (std::size_t b = 0; b < discs.size(); ++b)
+    if (Rim rim = rim_of(levels, discs[b], others[b], noise); !rim.turns.empty())
+      rims.push_back(std::move(rim));
+  if (rims.empty()) return 0;
+  if (rims.size() >= kEnough) {
+    subtract_common(rims, [](double turn) { return std::cos(2 * turn); });
+    subtract_common(rims, [](double turn) { return std::sin(2 * turn); });
+  }
+  std::vector<double> variations;
+  for (const Rim& rim : rims) {
+    constexpr double kSubtracted = 3;  // parameters of each disc
+    const double freedom = (static_cast<double>(rim.turns.size()) - kSubtracted) * kSteps;
+    variations.push_back(rim.rest.squaredNorm() / freedom - rim.noise);
+  }
+  return std::max(0.0, upper_median(std::move(variations)));
+}
+
+}  // namespace twincell
