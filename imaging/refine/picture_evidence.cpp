@@ -56,13 +56,7 @@ class Explanation {
       }
       sizes_.push_back(std::move(s));
     }
-    for (const Detection& d : discs) {
-      std::size_t nearest = 0;
-      for (std::size_t k = 1; k < radii.size(); ++k)
-        if (std::abs(std::log(d.radius / radii[k])) < std::abs(std::log(d.radius / radii[nearest])))
-          nearest = k;
-      size_of_.push_back(nearest);
-    }
+    for (const Detection& d : discs) size_of_.push_back(nearest_size(d.radius, radii));
     amplitude_.assign(discs.size(), 1);
     offset_.assign(discs.size(), 0);
     share_pixels();
@@ -306,6 +300,13 @@ class Explanation {
 };
 
 }  // namespace
+
+std::size_t nearest_size(double radius, const std::vector<double>& radii) {
+  const auto ratio = [&](double r) { return std::abs(std::log(radius / r)); };
+  const auto nearest =
+      std::min_element(radii.begin(), radii.end(), [&](double a, double b) { return ratio(a) < ratio(b); });
+  return static_cast<std::size_t>(nearest - radii.begin());
+}
 
 double pixel_gain(double e1, double s1, double e0, double s0) {
   return std::log(s1 / s0) + std::log((s0 * s0 + e0 * e0) / (s1 * s1 + e1 * e1));

@@ -46,6 +46,9 @@ struct PictureEvidence {
 PictureEvidence picture_evidence(const cv::Mat& grey, const std::vector<Detection>& discs,
                                  const std::vector<double>& radii_px, double neighbour_radius_px = 0);
 
+/// Index of the size, among at least one, to which a radius has the smallest ratio.
+std::size_t nearest_size(double radius, const std::vector<double>& radii);
+
 /// Gain of a pixel with residuals e_1 of scale s_1 with discs, e_0 of scale s_0 without: ln p(e_1) - ln
 /// p(e_0).
 double pixel_gain(double e1, double s1, double e0, double s0);

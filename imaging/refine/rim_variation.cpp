@@ -8,7 +8,6 @@
 #include <numbers>
 #include <utility>
 
-#include "core/median.hpp"
 #include "imaging/refine/picture_evidence.hpp"
 #include "imaging/refine/sparse_gauss_newton.hpp"
 
@@ -16,21 +15,22 @@ namespace twincell {
 
 namespace {
 
-constexpr int kDirections = 24, kTimes = 3;  // kTimes samples are averaged for each direction
-constexpr int kSteps = 13;                   // samples along the radius
-constexpr double kWidth = 0.35, kLeastWidth = 2, kMostWidth = 6;  // of R; px
-constexpr double kApart = 1.5;                                    // px from the rims of other discs
+constexpr int kDirections = 24, kTimes = 3;       // kTimes samples are averaged for each direction
+constexpr int kSteps = 13;                        // samples along the radius
+constexpr double kWidth = 0.35, kLeastWidth = 2;  // of R; px
+constexpr double kApart = 1.5;                    // px from the rims of other discs
 constexpr int kLeastDirections = kDirections / 3;
 constexpr double kNoise = 0.35;  // variance of a mean of kTimes interpolated samples, in variances of a pixel
 
 double width_of(const Detection& d) {
-  return std::clamp(kWidth * d.radius, kLeastWidth, kMostWidth);
+  return std::max(kWidth * d.radius, kLeastWidth);
 }
 
 using Levels = Eigen::Matrix<double, Eigen::Dynamic, kSteps>;
 
 /// What of the rim of a disc does not depend on r alone, in units of the scatter along the radius.
 struct Rim {
+  std::size_t size = 0;       // index of the size
   std::vector<double> turns;  // the directions in which it is seen
   Levels rest;                // a row for each
   double noise = 0;           // variance of the noise
@@ -104,38 +104,61 @@ void subtract_common(std::vector<Rim>& rims, Function&& of) {
       rim.rest.row(static_cast<Eigen::Index>(k)) -= of(rim.turns[k]) / squares * sum;
 }
 
+/// The value below which a share of the values lies.
+double quantile(std::vector<double> values, double share) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
 }  // namespace
 
-double rim_variation(const cv::Mat& grey, const std::vector<Detection>& discs) {
-  constexpr std::size_t kEnough = 3;  // discs that show what they have in common
-  if (std::min(grey.cols, grey.rows) < 2) return 0;
+double rim_variation(const cv::Mat& grey, const std::vector<Detection>& discs,
+                     const std::vector<double>& radii_px, const std::vector<Detection>& others) {
+  constexpr std::size_t kEnough = 3;       // discs that show what they have in common
+  constexpr double kRepresentative = 0.1;  // least share of discs that show their rims
+  if (discs.empty() || std::min(grey.cols, grey.rows) < 2) return 0;
   cv::Mat1f levels;
   grey.convertTo(levels, CV_32F);
   const double noise = noise_level(levels);
   std::vector<Disc> places;
-  places.reserve(discs.size());
-  for (const Detection& d : discs) places.push_back({d.x, d.y, d.radius, 1});
-  std::vector<std::vector<const Detection*>> others(discs.size());
-  for (const auto& [i, j] : near_pairs(places, kMostWidth + kApart)) {
-    others[static_cast<std::size_t>(i)].push_back(&discs[static_cast<std::size_t>(j)]);
-    others[static_cast<std::size_t>(j)].push_back(&discs[static_cast<std::size_t>(i)]);
+  std::vector<const Detection*> all;
+  double reach = 0;
+  for (const std::vector<Detection>* list : {&discs, &others})
+    for (const Detection& d : *list) {
+      places.push_back({d.x, d.y, d.radius, 1});
+      all.push_back(&d);
+      reach = std::max(reach, width_of(d) + kApart);
+    }
+  std::vector<std::vector<const Detection*>> neighbours(all.size());
+  for (const auto& [i, j] : near_pairs(places, reach)) {
+    neighbours[static_cast<std::size_t>(i)].push_back(all[static_cast<std::size_t>(j)]);
+    neighbours[static_cast<std::size_t>(j)].push_back(all[static_cast<std::size_t>(i)]);
   }
   std::vector<Rim> rims;
-  for (std::size_t b = 0; b < discs.size(); ++b)
-    if (Rim rim = rim_of(levels, discs[b], others[b], noise); !rim.turns.empty())
-      rims.push_back(std::move(rim));
-  if (rims.empty()) return 0;
+  for (std::size_t b = 0; b < discs.size(); ++b) {
+    Rim rim = rim_of(levels, discs[b], neighbours[b], noise);
+    if (rim.turns.empty()) continue;
+    rim.size = nearest_size(discs[b].radius, radii_px);
+    rims.push_back(std::move(rim));
+  }
+  if (static_cast<double>(rims.size()) < kRepresentative * static_cast<double>(discs.size())) return 0;
   if (rims.size() >= kEnough) {
     subtract_common(rims, [](double turn) { return std::cos(2 * turn); });
     subtract_common(rims, [](double turn) { return std::sin(2 * turn); });
   }
-  std::vector<double> variations;
+  std::vector<std::vector<double>> variations(radii_px.size());
   for (const Rim& rim : rims) {
     constexpr double kSubtracted = 3;  // parameters of each disc
     const double freedom = (static_cast<double>(rim.turns.size()) - kSubtracted) * kSteps;
-    variations.push_back(rim.rest.squaredNorm() / freedom - rim.noise);
+    variations[rim.size].push_back(rim.rest.squaredNorm() / freedom - rim.noise);
   }
-  return std::max(0.0, upper_median(std::move(variations)));
+  // What lies beside beads may spoil the rims of most of them, but a further size must be clearly seen.
+  const double share = radii_px.size() > 1 ? 0.5 : 0.25;
+  double largest = 0;
+  for (std::vector<double>& of_size : variations)
+    if (!of_size.empty()) largest = std::max(largest, quantile(std::move(of_size), share));
+  return largest;
 }
 
 }  // namespace twincell

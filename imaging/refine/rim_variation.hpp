@@ -15,19 +15,23 @@ namespace twincell {
 /// Largest rim_variation of discs. It is 0 to 0.04 for beads in real and drawn pictures, among them beads
 /// with glare, in jpeg files and on textures, 0.09 for squares, 0.17 for ellipses of 8:3, and above 0.1 for
 /// triangles, letters and textures. Hexagons (0.02) pass.
-inline constexpr double kMostRimVariation = 0.05;
+inline constexpr double kMostRimVariation = 0.03;
 
-/// Median over the discs of the variance of the grey levels around the rim that depends on the direction,
-/// divided by the variance along the radius of their mean over all directions.
+/// Lower quartile over discs of one size, or the largest of the medians over those of several sizes, of the
+/// variance of the grey levels around the rim that depends on the direction, divided by the variance along
+/// the radius of their mean over all directions.
 ///
-/// Levels are sampled within 0.35 R (2 to 6 px) of the rim in 24 directions, relative to their mean in each
-/// direction, so that uneven light does not count. Directions in which another disc or the border of the
+/// Levels are sampled within 0.35 R (at least 2 px) of the rim in 24 directions, relative to their mean in
+/// each direction, so that uneven light does not count. Directions in which another disc or the border of the
 /// picture is nearer than 1.5 px are left out. What varies with the cosine of the direction (an error of the
 /// centre, light from one side) is subtracted from each disc, and what varies with the cosine of twice the
 /// direction alike in three or more discs (motion, astigmatism, stretched pixels) from all. The noise of the
 /// picture is subtracted.
+/// \param others   discs that are not judged, but may be nearer to a rim
 /// \returns 0 if no disc shows a third of its rim
 /// Pure.
-double rim_variation(const cv::Mat& grey, const std::vector<Detection>& discs);
+/// \param radii_px the sizes; each disc belongs to the nearest. At least one
+double rim_variation(const cv::Mat& grey, const std::vector<Detection>& discs,
+                     const std::vector<double>& radii_px, const std::vector<Detection>& others = {});
 
 }  // namespace twincell

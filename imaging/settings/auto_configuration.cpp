@@ -274,7 +274,7 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   constexpr double kAcross = 6;
   ExaminedRegion region{grey, candidates.empty() ? 0 : 0.5 * candidates.front().diameter_px};
   // In a crystal that fills the frame the gaps are as alike as the discs, and described as well.
-  if (lattice > 0) region.clearly = HUGE_VAL;
+  if (lattice > 0) region.clearly = kClearlyInCrystal;
   if (patterned)
     region.picture =
         busiest(frame, std::max(kExaminedSide, static_cast<int>(kAcross * patterned->diameter_px)));

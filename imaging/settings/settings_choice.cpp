@@ -43,13 +43,24 @@ double area_of(const TriedSettings& tried) {
   return static_cast<double>(tried.beads) * tried.settings.diameter_px * tried.settings.diameter_px;
 }
 
+/// The rejected candidates that are discs, of another size or outside the frame.
+std::vector<Detection> other_discs(const std::vector<Detection>& dropped) {
+  constexpr double kGood = 0.8;  // least score
+  std::vector<Detection> discs;
+  for (const Detection& d : dropped)
+    if ((d.verdict == Verdict::wrong_radius || d.verdict == Verdict::outside) && d.score > kGood)
+      discs.push_back(d);
+  return discs;
+}
+
 TriedSettings try_one(const ExaminedRegion& region, const LocatorOptions& given, FoundSettings settings,
                       int most_sweeps) {
   LocatorOptions options = completed(settings, given);
   if (model_of(options.refine) == DiscModel::circle)
     settings.contrast = options.preprocess.contrast = find_contrast(region.picture, options);
   options.refine.sweeps = std::min(options.refine.sweeps, most_sweeps);
-  const std::vector<Detection> beads = locate(region.picture, options).beads;
+  const Located located = locate(region.picture, options);
+  const std::vector<Detection>& beads = located.beads;
   std::vector<double> radii = {0.5 * options.diameter_px};
   for (const double d : options.other_diameters_px) radii.push_back(0.5 * d);
   TriedSettings tried{settings,
@@ -57,7 +68,7 @@ TriedSettings try_one(const ExaminedRegion& region, const LocatorOptions& given,
                       beads.size()};
   // A stated size is that of round objects. Rims of patterned discs vary with direction.
   if (given.diameter_px <= 0 && model_of(options.refine) != DiscModel::circle)
-    tried.rim_variation = rim_variation(region.picture, beads);
+    tried.rim_variation = rim_variation(region.picture, beads, radii, other_discs(located.dropped));
   return tried;
 }
 
@@ -98,7 +109,7 @@ std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const Loca
 }
 
 SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
-  constexpr double kDiscs = 3, kTimesArea = 2;
+  constexpr double kDiscs = 3, kTimesArea = 2, kPart = 0.5;
   const auto sizes = [](const TriedSettings& t) { return t.settings.other_diameters_px.size(); };
   const auto less = [](const auto& a, const auto& b) { return a.evidence < b.evidence; };
   for (TriedSettings& t : tried)
@@ -106,10 +117,11 @@ SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
   // Preferred ones first, then those that are not round.
   const auto end = std::stable_partition(tried.begin(), tried.end(), is_round);
   const auto best = std::max_element(tried.begin(), end, less);
-  if (best == end || !explains(*best)) {
-    const auto other = std::max_element(end, tried.end(), less);
-    return {{}, other != tried.end() && explains(*other) ? other->rim_variation : 0};
-  }
+  const auto other = std::max_element(end, tried.end(), less);
+  const bool others_stand_out = other != tried.end() && explains(*other);
+  // Parts of larger objects may be round.
+  if (best == end || !explains(*best) || (others_stand_out && best->evidence < kPart * other->evidence))
+    return {{}, others_stand_out ? other->rim_variation : 0};
   const double share = best->evidence / static_cast<double>(best->beads);
   auto chosen = best;
   const auto first = tried.begin();
@@ -119,10 +131,9 @@ SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
     if (sizes(*first) < sizes(*best)) {
       if (first->evidence > best->evidence - kDiscs * share)
         reason = "a further size gains less than three discs";
-    } else if (std::isinf(clearly)) {
-      reason = "the gaps of a crystal are as alike as its discs";
     } else if (clearly * first->evidence > best->evidence) {
-      reason = fmt::format("less than {:g} times the evidence of the preferred ones", clearly);
+      reason = fmt::format("less than {:g} times the evidence of the preferred ones{}", clearly,
+                           clearly > kClearly ? ", for the gaps of a crystal are as alike as its discs" : "");
     } else if (area_of(*first) > kTimesArea * area_of(*best)) {
       reason = "less than half of the area of the preferred ones";
     }

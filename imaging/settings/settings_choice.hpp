@@ -12,6 +12,8 @@ namespace twincell::imaging {
 
 /// Ratio of evidence at which other settings replace the preferred ones.
 inline constexpr double kClearly = 1.25;
+/// The same in a crystal, whose gaps are as alike as its discs.
+inline constexpr double kClearlyInCrystal = 1.6;
 
 /// The part of a frame in which settings are tried.
 struct ExaminedRegion {
@@ -37,7 +39,7 @@ std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const Loca
 /// accurate; the order of the list does. Settings whose discs are not round (rim_variation.hpp) are never
 /// chosen. Each of the others that has more evidence than the chosen ones, or is not round, says why it was
 /// not chosen. \param tried the preferred ones first; those without positive evidence are never chosen
-/// \param clearly the factor 1.25; infinite: the preferred ones suffice \returns empty if the largest
+/// \param clearly the factor 1.25 \returns empty if the largest
 /// evidence of round discs is below 5 nats a disc
 SettingsChoice choose(std::vector<TriedSettings> tried, double clearly = kClearly);
 

@@ -46,12 +46,13 @@ TEST(SettingsChoice, AFurtherSizeMustGain) {
 TEST(SettingsChoice, OnlyRoundDiscsAreChosen) {
   TriedSettings squares = tried(10, 5000, 10);
   squares.rim_variation = 0.09;
-  EXPECT_EQ(chosen({squares, tried(20, 100, 5), tried(30, 90, 5)}), 20);
-  const SettingsChoice choice = choose({squares, tried(20, 100, 5)});
+  EXPECT_EQ(chosen({squares, tried(20, 2600, 5), tried(30, 2500, 5)}), 20);
+  const SettingsChoice choice = choose({squares, tried(20, 2600, 5)});
   EXPECT_EQ(choice.tried[1].not_chosen, "not round: rim variation 0.09");
   EXPECT_EQ(runner_up(choice), 0U);
   EXPECT_EQ(choice.not_round, 0);
-  const SettingsChoice none = choose({squares, tried(20, 10, 5)});
+  // Round parts of objects that explain twice as much are no beads.
+  const SettingsChoice none = choose({squares, tried(20, 2400, 5)});
   EXPECT_TRUE(none.tried.empty());
   EXPECT_EQ(none.not_round, 0.09);
   squares.evidence = 40;  // 4 nats a disc: no sign of anything
@@ -63,8 +64,11 @@ TEST(SettingsChoice, MoreEvidenceIsExplained) {
   const auto reason = [](const SettingsChoice& choice) { return choice.tried.at(1).not_chosen; };
   EXPECT_EQ(reason(choose({tried(10, 1000, 10), tried(20, 1240, 5)})),
             "less than 1.25 times the evidence of the preferred ones");
-  EXPECT_EQ(reason(choose({tried(10, 1000, 100), tried(20, 9000, 50)}, HUGE_VAL)),
-            "the gaps of a crystal are as alike as its discs");
+  EXPECT_EQ(
+      reason(choose({tried(10, 1000, 100), tried(20, 1500, 50)}, kClearlyInCrystal)),
+      "less than 1.6 times the evidence of the preferred ones, for the gaps of a crystal are as alike as its "
+      "discs");
+  EXPECT_EQ(choose({tried(10, 1000, 100), tried(20, 1700, 50)}, kClearlyInCrystal).tried[0].evidence, 1700);
   EXPECT_EQ(reason(choose({tried(40, 1000, 100), tried(10, 9000, 300)})),
             "less than half of the area of the preferred ones");
   EXPECT_EQ(reason(choose({tried(10, 10000, 100), tried(10, 10290, 105, {14})})),
