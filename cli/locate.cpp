@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <sstream>
 
 #include "cli/locate_view.hpp"
 #include "cli/locating_options.hpp"
@@ -126,6 +127,13 @@ std::string doubts(const std::map<imaging::Verdict, std::size_t>& left_out, std:
         "more candidates were left out than beads were found: check --overlay; --diameter with --dark or "
         "--bright may give a better result\n";
   return text;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
 }
 
 void run(LocateOptions& o, const Common& common) {
@@ -264,8 +272,9 @@ void run(LocateOptions& o, const Common& common) {
     text += fmt::format("bead diameter found from {}: {} px (--diameter)\n", shown, sizes);
   }
   if (!choice.tried.empty()) document["settings_tried"] = settings_as_json(choice, refine);
-  text += o.explain ? settings_table(choice, refine) : narrow_win(choice, refine);
-  if (refine != locator.refine.method && imaging::model_of(locator.refine) == imaging::DiscModel::circle)
+  const std::string narrow = narrow_win(choice, refine);
+  text += o.explain ? settings_table(choice, refine) : narrow;
+  if (refine != locator.refine.method && model_of(locator.refine) == DiscModel::circle)
     text += fmt::format(
         "the insides of the discs differ in {}: the discs are fitted by their rims (--refine edges)\n",
         shown);
@@ -288,7 +297,9 @@ void run(LocateOptions& o, const Common& common) {
     text += fmt::format("beads are {} than the background in {} (--dark, --bright)\n",
                         locator.preprocess.bright ? "brighter" : "darker", shown);
   document["left_out"] = in_words(left_out);
-  text += doubts(left_out, beads, bare, static_cast<std::size_t>(n));
+  const std::string warnings = doubts(left_out, beads, bare, static_cast<std::size_t>(n));
+  document["warnings"] = lines_of(narrow + warnings);
+  text += warnings;
   text += o.output + "\n";
   if (view) text += o.view + "\n";
   if (truth) {

@@ -21,8 +21,9 @@ std::string settings_table(const imaging::SettingsChoice& choice, const std::str
 /// is not empty
 std::string settings_lead(const imaging::SettingsChoice& choice, const std::string& refine);
 
-/// If the chosen settings won narrowly, a sentence with the options of the runner-up; otherwise empty.
-std::string narrow_win(const imaging::SettingsChoice& choice, const std::string& refine);
+/// Warnings: a sentence with the options of the runner-up if the chosen settings won narrowly, and a sentence
+/// if objects that are not round explain more. Empty if there is no reason for doubt.
+std::string narrow_win(const SettingsChoice& choice, const std::string& refine);
 
 /// List of objects with "options", "evidence", "beads" and "chosen"; in the order of the table.
 nlohmann::json settings_as_json(const imaging::SettingsChoice& choice, const std::string& refine);

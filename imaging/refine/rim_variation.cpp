@@ -56,11 +56,13 @@ Rim rim_of(const cv::Mat1f& grey, const Detection& d, const std::vector<const De
     bool seen = true;
     for (int t = 0; t < kTimes && seen; ++t) {
       const double turn = 2 * std::numbers::pi * (k * kTimes + t + 0.5) / (kDirections * kTimes);
-      for (int step = 0; step < kSteps && seen; ++step) {
+      // Outermost first, because there it is most often hidden.
+      for (int step = kSteps - 1; step >= 0 && seen; --step) {
         const double x = d.x + at(step) * std::cos(turn), y = d.y + at(step) * std::sin(turn);
         seen = x >= 0 && y >= 0 && x <= grey.cols - 1 && y <= grey.rows - 1 &&
                std::none_of(others.begin(), others.end(), [&](const Detection* o) {
-                 return std::hypot(x - o->x, y - o->y) < o->radius + kApart;
+                 const double dx = x - o->x, dy = y - o->y, far = o->radius + kApart;
+                 return dx * dx + dy * dy < far * far;
                });
         if (seen) sum[static_cast<std::size_t>(step)] += interpolated(grey, x, y) / kTimes;
       }

@@ -72,16 +72,16 @@ TriedSettings try_one(const ExaminedRegion& region, const LocatorOptions& given,
   return tried;
 }
 
-bool is_round(const TriedSettings& tried) {
-  return tried.rim_variation <= kMostRimVariation;
-}
-
 bool explains(const TriedSettings& tried) {
   constexpr double kLeastShare = 5;  // nats a disc: odds of 150 that it is one
   return tried.evidence > 0 && tried.evidence >= kLeastShare * static_cast<double>(tried.beads);
 }
 
 }  // namespace
+
+bool is_round(const TriedSettings& tried) {
+  return tried.rim_variation <= kMostRimVariation;
+}
 
 LocatorOptions completed(const FoundSettings& settings, LocatorOptions given) {
   given.judge.drop_unlike = given.diameter_px <= 0 && settings.other_diameters_px.empty();

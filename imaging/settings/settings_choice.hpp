@@ -22,6 +22,9 @@ struct ExaminedRegion {
   double clearly = kClearly;       ///< of choose()
 };
 
+/// Whether the discs located with settings may be discs: their rim variation is at most kMostRimVariation.
+bool is_round(const TriedSettings& tried);
+
 /// The given options, completed with settings.
 LocatorOptions completed(const FoundSettings& settings, LocatorOptions given);
 

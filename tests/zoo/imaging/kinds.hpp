@@ -4,6 +4,7 @@
 /// diameter.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -289,6 +290,50 @@ inline Exhibit tape(double d) {
   return {canvas.exposed(kBlur, kNoise, 12), truth_of(places)};
 }
 
+/// Dark polygons in random directions, of the size of beads. \param stretched ratio of length and width
+inline Exhibit polygons(double d, int sides, double stretched = 1) {
+  Painter canvas(side_of(d), kLight);
+  std::mt19937_64 random(13);
+  std::uniform_real_distribution<double> uniform(0, 2 * std::numbers::pi);
+  for (const Place& p : apart(d, inner(canvas.side(), 0.7 * d), 1.5, 13)) {
+    const double turn = uniform(random), part = 2 * std::numbers::pi / sides;
+    canvas.disc(p.x, p.y, p.radius, [&](double u, double v, double below) {
+      const double along = u * std::cos(turn) + v * std::sin(turn),
+                   across = stretched * (v * std::cos(turn) - u * std::sin(turn));
+      const double angle = std::atan2(across, along), within = angle - part * std::floor(angle / part);
+      return std::hypot(along, across) * std::cos(within - 0.5 * part) < std::cos(0.5 * part) ? 20 : below;
+    });
+  }
+  return {canvas.exposed(kBlur, kNoise, 13), {}};
+}
+
+/// A page of text.
+inline Exhibit page(double height) {
+  Painter canvas(300, 230);
+  for (int line = 0; (line + 1) * 1.5 * height < canvas.side(); ++line)
+    canvas.text("tilt " + std::to_string(114 + 17 * line) + ", fixed walls, dry", 4,
+                (line + 1) * 1.5 * height, height, 25);
+  return {canvas.exposed(kBlur, kNoise, 14), {}};
+}
+
+/// Dark spots of all shapes on light ground: a sum of waves in random directions, cut at a level.
+inline Exhibit spots(double wave) {
+  Painter canvas(300, kLight);
+  std::mt19937_64 random(15);
+  std::uniform_real_distribution<double> uniform(0, 2 * std::numbers::pi);
+  std::vector<std::array<double, 3>> waves;
+  for (int k = 0; k < 40; ++k) {
+    const double turn = uniform(random), number = (0.6 + 0.1 * uniform(random)) * 2 * std::numbers::pi / wave;
+    waves.push_back({number * std::cos(turn), number * std::sin(turn), uniform(random)});
+  }
+  canvas.everywhere([&](double x, double y, double below) {
+    double sum = 0;
+    for (const auto& [kx, ky, phase] : waves) sum += std::cos(kx * x + ky * y + phase);
+    return sum > 3 ? 50.0 : below;
+  });
+  return {canvas.exposed(kBlur, kNoise, 15), {}};
+}
+
 struct Kind {
   std::string name;
   std::function<Exhibit(double)> make;
@@ -307,6 +352,16 @@ inline const std::vector<Kind>& kinds() {
                                         {"ruler, text", ruler_and_text},
                                         {"uneven light", uneven_light},
                                         {"tape", tape}};
+  return all;
+}
+
+/// Pictures without beads.
+inline const std::vector<Kind>& without_beads() {
+  static const std::vector<Kind> all = {{"triangles", [](double d) { return polygons(d, 3); }},
+                                        {"squares", [](double d) { return polygons(d, 4); }},
+                                        {"ellipses", [](double d) { return polygons(d, 60, 2); }},
+                                        {"text", page},
+                                        {"spots", spots}};
   return all;
 }
 
