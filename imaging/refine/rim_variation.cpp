@@ -117,8 +117,8 @@ double quantile(std::vector<double> values, double share) {
 
 double rim_variation(const cv::Mat& grey, const std::vector<Detection>& discs,
                      const std::vector<double>& radii_px, const std::vector<Detection>& others) {
-  constexpr std::size_t kEnough = 3;       // discs that show what they have in common
-  constexpr double kRepresentative = 0.1;  // least share of discs that show their rims
+  constexpr std::size_t kEnough = 3;        // discs that show what they have in common
+  constexpr double kRepresentative = 0.25;  // least share of discs that show their rims
   if (discs.empty() || std::min(grey.cols, grey.rows) < 2) return 0;
   cv::Mat1f levels;
   grey.convertTo(levels, CV_32F);

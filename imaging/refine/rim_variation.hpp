@@ -12,9 +12,9 @@
 
 namespace twincell {
 
-/// Largest rim_variation of discs. It is 0 to 0.04 for beads in real and drawn pictures, among them beads
-/// with glare, in jpeg files and on textures, 0.09 for squares, 0.17 for ellipses of 8:3, and above 0.1 for
-/// triangles, letters and textures. Hexagons (0.02) pass.
+/// Largest rim_variation of discs. It is 0 to 0.023 for beads in real and drawn pictures, among them beads
+/// with glare, in jpeg files, next to other beads and on textures, 0.09 for squares, 0.14 for ellipses of
+/// 8:3, and more for letters and textures. Hexagons (0.02) pass.
 inline constexpr double kMostRimVariation = 0.03;
 
 /// Lower quartile over discs of one size, or the largest of the medians over those of several sizes, of the
@@ -27,10 +27,10 @@ inline constexpr double kMostRimVariation = 0.03;
 /// centre, light from one side) is subtracted from each disc, and what varies with the cosine of twice the
 /// direction alike in three or more discs (motion, astigmatism, stretched pixels) from all. The noise of the
 /// picture is subtracted.
-/// \param others   discs that are not judged, but may be nearer to a rim
-/// \returns 0 if no disc shows a third of its rim
-/// Pure.
 /// \param radii_px the sizes; each disc belongs to the nearest. At least one
+/// \param others   discs that are not judged, but may be nearer to a rim
+/// \returns 0 if less than a quarter of the discs show a third of their rims: in a dense packing those are at
+///     walls and other objects. Pure.
 double rim_variation(const cv::Mat& grey, const std::vector<Detection>& discs,
                      const std::vector<double>& radii_px, const std::vector<Detection>& others = {});
 
