@@ -274,7 +274,7 @@ void run(LocateOptions& o, const Common& common) {
   if (!choice.tried.empty()) document["settings_tried"] = settings_as_json(choice, refine);
   const std::string narrow = narrow_win(choice, refine);
   text += o.explain ? settings_table(choice, refine) : narrow;
-  if (refine != locator.refine.method && model_of(locator.refine) == DiscModel::circle)
+  if (refine != locator.refine.method && imaging::model_of(locator.refine) == imaging::DiscModel::circle)
     text += fmt::format(
         "the insides of the discs differ in {}: the discs are fitted by their rims (--refine edges)\n",
         shown);

@@ -43,13 +43,13 @@ std::string settings_lead(const imaging::SettingsChoice& choice, const std::stri
   return fmt::format("the best settings with other discs have {:.0f} nats less: {}\n", lead, other);
 }
 
-std::string narrow_win(const SettingsChoice& choice, const std::string& refine) {
+std::string narrow_win(const imaging::SettingsChoice& choice, const std::string& refine) {
   std::string text;
-  if (const std::size_t k = narrow_runner_up(choice); k > 0)
+  if (const std::size_t k = imaging::narrow_runner_up(choice); k > 0)
     text += fmt::format("other settings explain the picture nearly as well; compare --overlay with: {}\n",
                         options_of(choice.tried[k].settings, refine));
-  if (std::any_of(choice.tried.begin(), choice.tried.end(), [&](const TriedSettings& t) {
-        return !is_round(t) && t.evidence > choice.tried.front().evidence;
+  if (std::any_of(choice.tried.begin(), choice.tried.end(), [&](const imaging::TriedSettings& t) {
+        return !imaging::is_round(t) && t.evidence > choice.tried.front().evidence;
       }))
     text +=
         "objects that are not round explain more of the picture than the beads do: check --overlay; "

@@ -11,7 +11,7 @@
 #include "imaging/refine/picture_evidence.hpp"
 #include "imaging/refine/sparse_gauss_newton.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 namespace {
 
@@ -163,4 +163,4 @@ double rim_variation(const cv::Mat& grey, const std::vector<Detection>& discs,
   return largest;
 }
 
-}  // namespace twincell
+}  // namespace twincell::imaging

@@ -10,7 +10,7 @@
 
 #include "imaging/disc/detection.hpp"
 
-namespace twincell {
+namespace twincell::imaging {
 
 /// Largest rim_variation of discs. It is 0 to 0.023 for beads in real and drawn pictures, among them beads
 /// with glare, in jpeg files, next to other beads and on textures, 0.09 for squares, 0.14 for ellipses of
@@ -34,4 +34,4 @@ inline constexpr double kMostRimVariation = 0.03;
 double rim_variation(const cv::Mat& grey, const std::vector<Detection>& discs,
                      const std::vector<double>& radii_px, const std::vector<Detection>& others = {});
 
-}  // namespace twincell
+}  // namespace twincell::imaging

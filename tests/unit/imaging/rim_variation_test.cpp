@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace twincell {
+namespace twincell::imaging {
 namespace {
 
 constexpr int kSide = 240, kPitch = 60;
@@ -131,4 +131,4 @@ TEST(RimVariation, IsThatOfTheLeastRoundSize) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::imaging
