@@ -228,6 +228,16 @@ std::vector<FoundSettings> small_profiles(const cv::Mat& grey, const LocatorOpti
   return best_profiles(std::move(tried));
 }
 
+/// What explains more than the chosen settings but is not round, if anything and of one size.
+std::optional<FoundSettings> best_not_round(const SettingsChoice& choice) {
+  const TriedSettings* best = choice.not_round.empty() ? nullptr : choice.not_round.data();
+  double to_beat = choice.tried.empty() ? 0 : choice.tried.front().evidence;
+  for (const TriedSettings& t : choice.tried)
+    if (!is_round(t) && t.evidence > to_beat) best = &t, to_beat = t.evidence;
+  if (best == nullptr || !best->settings.other_diameters_px.empty()) return std::nullopt;
+  return best->settings;
+}
+
 }  // namespace
 
 SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& given) {
@@ -281,25 +291,33 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   std::vector<TriedSettings> tried = try_settings(region, given, candidates);
   SettingsChoice choice = confirmed(region, given, std::move(tried));
   if (given.diameter_px > 0 || model_of(given.refine) != DiscModel::plain) return choice;
+  // Discs of sizes that are not searched for hide rims of the others, which then do not seem round.
+  const auto with = [&](const std::vector<FoundSettings>& more) {
+    std::vector<TriedSettings> every = choice.tried;
+    every.insert(every.end(), choice.not_round.begin(), choice.not_round.end());
+    for (const TriedSettings& t : try_settings(region, given, more)) every.push_back(t);
+    return confirmed(region, given, std::move(every));
+  };
+  if (const auto unlike = best_not_round(choice))
+    if (auto mixed = find_polydisperse(grey, given, all, *unlike)) choice = with({*mixed});
   if (choice.tried.empty() && one_size && given.refine.method == kExactRefiner.word) {
     region.neighbour_radius_px = kSmallestRadius;
-    const double not_round = choice.not_round;
+    std::vector<TriedSettings> not_round = std::move(choice.not_round);
     choice = confirmed(region, given, try_settings(region, given, small_profiles(grey, given)));
-    choice.not_round = std::max(choice.not_round, not_round);
+    if (choice.not_round.empty()) choice.not_round = std::move(not_round);
   }
   if (choice.tried.empty()) return choice;
   // The size of the winner, by its rims alone and with further sizes.
   FoundSettings winner = choice.tried.front().settings;
   std::vector<FoundSettings> more;
-  if (winner.method != kEdgeRefiner.word) {
+  if (winner.method != kEdgeRefiner.word && winner.other_diameters_px.empty()) {
     if (auto mixed = find_polydisperse(grey, given, all, winner)) more.push_back(*mixed);
     if (given.refine.method == kExactRefiner.word) {
       winner.method = kEdgeRefiner.word;
       more.push_back(winner);
     }
   }
-  for (const TriedSettings& t : try_settings(region, given, more)) choice.tried.push_back(t);
-  return confirmed(region, given, std::move(choice.tried));
+  return with(more);
 }
 
 std::optional<FoundSettings> find_settings(const cv::Mat& picture, const LocatorOptions& given) {

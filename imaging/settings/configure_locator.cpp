@@ -35,7 +35,7 @@ LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given) {
     if (frame == nullptr) break;
     if (is_blank(*frame)) continue;
     SettingsChoice choice = choose_settings(*frame, given);
-    not_round = std::max(not_round, choice.not_round);
+    if (!choice.not_round.empty()) not_round = std::max(not_round, choice.not_round.front().rim_variation);
     if (choice.tried.empty()) continue;
     LocatorOptions settled = completed(choice.tried.front().settings, given);
     if (model_of(settled.refine) == DiscModel::circle)

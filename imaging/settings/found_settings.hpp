@@ -32,8 +32,8 @@ struct TriedSettings {
 struct SettingsChoice {
   std::vector<TriedSettings> tried;  ///< the chosen ones first, the others by evidence; empty: none explains
                                      ///< anything
-  double not_round = 0;              ///< if empty: the rim variation of what explains the most but is not
-                                     ///< round; 0: nothing does
+  std::vector<TriedSettings> not_round;  ///< if empty: those that explain something but are not round, by
+                                         ///< evidence
 };
 
 }  // namespace twincell::imaging

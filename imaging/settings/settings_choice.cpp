@@ -117,11 +117,13 @@ SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
   // Preferred ones first, then those that are not round.
   const auto end = std::stable_partition(tried.begin(), tried.end(), is_round);
   const auto best = std::max_element(tried.begin(), end, less);
-  const auto other = std::max_element(end, tried.end(), less);
-  const bool others_stand_out = other != tried.end() && explains(*other);
+  std::vector<TriedSettings> others(end, tried.end());
+  std::erase_if(others, [](const TriedSettings& t) { return !explains(t); });
+  std::stable_sort(others.begin(), others.end(), [&](const auto& a, const auto& b) { return less(b, a); });
   // Parts of larger objects may be round.
-  if (best == end || !explains(*best) || (others_stand_out && best->evidence < kPart * other->evidence))
-    return {{}, others_stand_out ? other->rim_variation : 0};
+  if (best == end || !explains(*best) ||
+      (!others.empty() && best->evidence < kPart * others.front().evidence))
+    return {{}, std::move(others)};
   const double share = best->evidence / static_cast<double>(best->beads);
   auto chosen = best;
   const auto first = tried.begin();
@@ -141,7 +143,7 @@ SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
   }
   for (auto t = tried.begin(); t != end; ++t)
     if (t->evidence > chosen->evidence) t->not_chosen = reason;
-  SettingsChoice choice{{*chosen}};
+  SettingsChoice choice{{*chosen}, {}};
   tried.erase(chosen);
   std::stable_sort(tried.begin(), tried.end(), [&](const auto& a, const auto& b) { return less(b, a); });
   choice.tried.insert(choice.tried.end(), tried.begin(), tried.end());

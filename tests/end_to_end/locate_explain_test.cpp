@@ -1,6 +1,8 @@
 // `locate --explain`: what was tried, and the options of the chosen settings give the same beads.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -51,6 +53,9 @@ TEST(LocateExplain, PrintsWhatWasTriedAndAClearWin) {
   const nlohmann::json chosen = said["settings_tried"][0];
   EXPECT_EQ(chosen["chosen"], true);
   EXPECT_EQ(chosen["beads"], 49);
+  EXPECT_EQ(chosen["not_chosen"], "");
+  EXPECT_LT(chosen["rim_variation"].get<double>(), 0.03);
+  EXPECT_TRUE(said["warnings"].empty()) << said["warnings"];
   EXPECT_GT(chosen["evidence"].get<double>(), 49 * 100);
   // The options, pasted, give the same beads.
   std::vector<std::string> pasted = {"locate", picture, "-o", table, "--json"};
@@ -59,6 +64,30 @@ TEST(LocateExplain, PrintsWhatWasTriedAndAClearWin) {
   const auto again = nlohmann::json::parse(run_program(pasted).out);
   EXPECT_EQ(again["frames"][0]["beads"], 49);
   EXPECT_FALSE(again.contains("settings_tried"));
+}
+
+TEST(LocateExplain, WhatIsNotRoundIsRefusedUnlessADiameterIsGiven) {
+  const TemporaryFolder folder;
+  const std::string picture = (folder.path() / "squares.png").string(),
+                    table = (folder.path() / "beads.csv").string();
+  cv::Mat1b squares(220, 220, uchar{200});
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) {
+      const cv::RotatedRect square(cv::Point2f(25 + 34.0F * i, 25 + 34.0F * j), {18, 18},
+                                   17.0F * (i + 2 * j));
+      std::array<cv::Point2f, 4> corners;
+      square.points(corners.data());
+      cv::fillConvexPoly(squares, std::vector<cv::Point>(corners.begin(), corners.end()), cv::Scalar(20),
+                         cv::LINE_AA);
+    }
+  cv::GaussianBlur(squares, squares, {0, 0}, 0.8);
+  cv::imwrite(picture, squares);
+  const Ran refused = run_program({"locate", picture, "-o", table});
+  EXPECT_EQ(refused.code, 3) << refused.err;
+  EXPECT_NE(refused.err.find("what stands out is not round"), std::string::npos) << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(table));
+  const Ran given = run_program({"locate", picture, "-o", table, "--diameter", "20"});
+  EXPECT_EQ(given.code, 0) << given.err;
 }
 
 }  // namespace twincell

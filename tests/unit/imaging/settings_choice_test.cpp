@@ -50,13 +50,14 @@ TEST(SettingsChoice, OnlyRoundDiscsAreChosen) {
   const SettingsChoice choice = choose({squares, tried(20, 2600, 5)});
   EXPECT_EQ(choice.tried[1].not_chosen, "not round: rim variation 0.09");
   EXPECT_EQ(runner_up(choice), 0U);
-  EXPECT_EQ(choice.not_round, 0);
+  EXPECT_TRUE(choice.not_round.empty());
   // Round parts of objects that explain twice as much are no beads.
   const SettingsChoice none = choose({squares, tried(20, 2400, 5)});
   EXPECT_TRUE(none.tried.empty());
-  EXPECT_EQ(none.not_round, 0.09);
+  ASSERT_EQ(none.not_round.size(), 1U);
+  EXPECT_EQ(none.not_round[0].rim_variation, 0.09);
   squares.evidence = 40;  // 4 nats a disc: no sign of anything
-  EXPECT_EQ(choose({squares}).not_round, 0);
+  EXPECT_TRUE(choose({squares}).not_round.empty());
 }
 
 // Settings with more evidence than the chosen ones say why they were not chosen, and only they do.
