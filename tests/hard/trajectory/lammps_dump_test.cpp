@@ -243,7 +243,8 @@ TEST_F(Dump, OptionsThatDoNotFitAreRefused) {
   options = reduced();
   options.origin = Vec3(0, 11, 0);
   EXPECT_EQ(refusal(text, options),
-            "options: --cell-origin: the origin of the cell, its lower left corner, is above or to the right of all beads.");
+            "options: --cell-origin: the origin of the cell, its lower left corner, is above or to the right "
+            "of all beads.");
 }
 
 // Bytes changed, removed and duplicated anywhere: the dump is refused with a line number or read as finite

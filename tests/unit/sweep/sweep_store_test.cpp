@@ -88,8 +88,8 @@ TEST(SweepMemory, PointsThatRunAtOnceMustFitTogether) {
   const Store searched(folder / "search");
   const Schedule rounds(search, searched);
   EXPECT_NO_THROW(require_memory_together(rounds, 3, "--threads", 36e6));
-  expect_refusal<ConfigError>([&] { require_memory_together(rounds, 3, "--threads", 35.5e6); }, "beads.layers",
-                              "4000 beads", "with --threads 2");
+  expect_refusal<ConfigError>([&] { require_memory_together(rounds, 3, "--threads", 35.5e6); },
+                              "beads.layers", "4000 beads", "with --threads 2");
 }
 
 TEST(SweepPlan, AValueIsNotNamedTwiceInOtherDigits) {
