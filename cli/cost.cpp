@@ -278,13 +278,13 @@ analysis::Figure figure(const Measured& m) {
   };
   // Each colour also has its own point shape.
   constexpr std::array<Style, 3> kStyles = {
-      {{"verlet", analysis::colours::kBlue, figure_style::kCircle},
-       {"predicted", analysis::colours::kOrange, figure_style::kSquare},
-       {"split", analysis::colours::kVermilion, figure_style::kTriangle}}};
+      {{"verlet", analysis::colours::kBlue, analysis::figure_style::kCircle},
+       {"predicted", analysis::colours::kOrange, analysis::figure_style::kSquare},
+       {"split", analysis::colours::kVermilion, analysis::figure_style::kTriangle}}};
   analysis::Figure f{
       .name = "work_precision", .title = "Accuracy against computing time", .width = 720, .height = 760};
-  figure_style::Axis time{.label = "processor time, µs per bead and t_0", .logarithmic = true};
-  std::array<figure_style::Axis, 3> errors;
+  analysis::figure_style::Axis time{.label = "processor time, µs per bead and t_0", .logarithmic = true};
+  std::array<analysis::figure_style::Axis, 3> errors;
   errors.fill({.label = "error", .logarithmic = true});
   std::vector<double> stiffnesses;
   for (const WorkPrecision& w : m.all)
@@ -313,17 +313,17 @@ analysis::Figure figure(const Measured& m) {
         clauses[panel] += fmt::format(
             "{}'{}.dat' index {} using 1:{} with linespoints pt {} ps {} lw {} lc rgb '{}' notitle",
             clauses[panel].empty() ? "" : ", ", f.name, index, panel + 2, style.point, bold ? 0.9 : 0.4,
-            bold ? figure_style::kCurve : 0.7, style.colour);
+            bold ? analysis::figure_style::kCurve : 0.7, style.colour);
       ++index;
     }
   constexpr std::array<const char*, 3> kTitles = {"head-on: largest |e − e_{exact}|",
                                                   "oblique, no slip: largest, v_t^′/v_t",
                                                   "impacts of a bed: rms, Rω^′/v"};
-  const figure_style::Panels panels(2, 2, f.width, f.height, 1);
-  f.plot = figure_style::Panels::begin();
+  const analysis::figure_style::Panels panels(2, 2, f.width, f.height, 1);
+  f.plot = analysis::figure_style::Panels::begin();
   for (std::size_t panel = 0; panel < clauses.size(); ++panel)
-    f.plot += panels.panel(panel) + figure_style::axes(time, errors[panel]) +
-              figure_style::panel_title("abc"[panel], kTitles[panel]) +
+    f.plot += panels.panel(panel) + analysis::figure_style::axes(time, errors[panel]) +
+              analysis::figure_style::panel_title("abc"[panel], kTitles[panel]) +
               fmt::format("plot {}\n", clauses[panel]);
   std::vector<std::string> key;
   for (const Style& style : kStyles)

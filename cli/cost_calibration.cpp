@@ -74,7 +74,7 @@ analysis::Figure figure(const calibration::CalibrationCost& cost) {
                      .title = "Accuracy of calibration against number of frames",
                      .width = 720,
                      .height = 460};
-  figure_style::Axis frames{.label = "frames", .logarithmic = true},
+  analysis::figure_style::Axis frames{.label = "frames", .logarithmic = true},
       error{.label = "standard error, in the unit of the key", .logarithmic = true};
   std::string clauses;
   int index = 0;
@@ -95,7 +95,7 @@ analysis::Figure figure(const calibration::CalibrationCost& cost) {
                            index > 0 ? ", " : "", index, index + 1, analysis::gnuplot_text(title));
     ++index;
   }
-  f.plot = fmt::format("{}plot {}\n", figure_style::axes(frames, error), clauses);
+  f.plot = fmt::format("{}plot {}\n", analysis::figure_style::axes(frames, error), clauses);
   return f;
 }
 

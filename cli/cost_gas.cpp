@@ -71,7 +71,7 @@ CostReport cost_of_gas(double accuracy, bool quick, const Common& common) {
   for (const std::vector<GasTemperature>& of_system : all) {
     const GasTemperature& first = of_system.front();
     report.text += fmt::format("\n{}\n", first.gas.system);
-    figure_style::Axis time{.label = "processor time, s", .logarithmic = true},
+    analysis::figure_style::Axis time{.label = "processor time, s", .logarithmic = true},
         error{.label = "standard error of T_z/T_z", .logarithmic = true};
     error.show(accuracy);
     std::string clauses;
@@ -108,12 +108,14 @@ CostReport cost_of_gas(double accuracy, bool quick, const Common& common) {
       clauses += fmt::format(
           "'{0}.dat' index {1} with lines dt {2} lw {3} lt {4} title '{5}', '' index {1} every ::1::1 "
           "with points lt {4} notitle, ",
-          figure.name, index, g.gas.event_driven ? 1 : 2, figure_style::kCurve, 1 + &g - &first, name_of(g));
+          figure.name, index, g.gas.event_driven ? 1 : 2, analysis::figure_style::kCurve, 1 + &g - &first,
+          name_of(g));
       ++index;
     }
-    panels += figure_style::axes(time, error) +
-              figure_style::panel_title(static_cast<char>('a' + panel++), first.gas.system) +
-              fmt::format("plot {}{} with lines {} notitle\n", clauses, accuracy, figure_style::kStated);
+    panels +=
+        analysis::figure_style::axes(time, error) +
+        analysis::figure_style::panel_title(static_cast<char>('a' + panel++), first.gas.system) +
+        fmt::format("plot {}{} with lines {} notitle\n", clauses, accuracy, analysis::figure_style::kStated);
     const double gain = first.seconds / first.periods / (cheapest->seconds / cheapest->periods);
     report.text += fmt::format("  {} needs {:.1f} times less time per period than {}\n", name_of(*cheapest),
                                gain, name_of(first));

@@ -212,7 +212,8 @@ class Panels {
     }
     data_ += "\n\n";
     add(fmt::format("'{}.dat' index {} using 1:2 with {} pt {} ps 0.9 lw {} lc rgb '{}' title '{}'", name_,
-                    index_, line ? "linespoints" : "points", shape, figure_style::kCurve, colour, title));
+                    index_, line ? "linespoints" : "points", shape, analysis::figure_style::kCurve, colour,
+                    title));
     if (line)
       add(fmt::format("'{}.dat' index {} using 1:3 with lines lw 1 dt 2 lc rgb '{}' notitle", name_, index_,
                       colour));
@@ -222,9 +223,10 @@ class Panels {
   /// Commands of a panel. \param clauses more clauses
   [[nodiscard]] std::string plot(std::size_t panel, const std::string& title, int beads,
                                  const std::string& more = {}) const {
-    figure_style::Axis time = time_;
+    analysis::figure_style::Axis time = time_;
     time.label = fmt::format("processor time, ms per frame of {} beads", beads);
-    return figure_style::axes(time, errors_[panel]) + figure_style::panel_title("abc"[panel], title) +
+    return analysis::figure_style::axes(time, errors_[panel]) +
+           analysis::figure_style::panel_title("abc"[panel], title) +
            fmt::format("plot {}{}\n", clauses_[panel], more);
   }
 
@@ -232,8 +234,8 @@ class Panels {
   void add(const std::string& clause) { clauses_.back() += (clauses_.back().empty() ? "" : ", ") + clause; }
   std::string name_, data_;
   std::vector<std::string> clauses_;
-  figure_style::Axis time_{.label = {}, .logarithmic = true};
-  std::vector<figure_style::Axis> errors_;  ///< of each panel
+  analysis::figure_style::Axis time_{.label = {}, .logarithmic = true};
+  std::vector<analysis::figure_style::Axis> errors_;  ///< of each panel
   int index_ = 0;
 };
 
@@ -287,7 +289,7 @@ analysis::Figure figure(const Measured& m) {
            panels.plot(0, "15 px, SNR 51; dashed: Cramér–Rao bound", beads) +
            panels.plot(1, "noise, 15 px", beads) +
            panels.plot(2, "pixels per bead, SNR 51", beads,
-                       fmt::format(", 1./30 with lines {} title 'σ/30'", figure_style::kStated)) +
+                       fmt::format(", 1./30 with lines {} title 'σ/30'", analysis::figure_style::kStated)) +
            "unset multiplot\n";
   return f;
 }

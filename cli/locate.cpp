@@ -250,10 +250,11 @@ void run(LocateOptions& o, const Common& common) {
   }
   if (const std::size_t unproven = motion.unproven(); unproven > 0)
     text += fmt::format(
-        "in {} frames the edges are blurred more along one direction than across it, though the beads do not "
-        "move "
-        "that far from frame to frame, or there is only one frame: no motion is concluded from it\n",
-        unproven);
+        "in {} the edges are blurred more along one direction than across it, though {}: no motion is "
+        "concluded from it\n",
+        counted(unproven, "frame"),
+        n == 1 ? "one frame does not show how beads move"
+               : "the beads do not move that far from frame to frame");
   if (const nlohmann::json said = imaging::restrictions(o.locating); !said.is_null())
     document["restrictions"] = said;
   // Report the settings that were determined from the frames, with the options that set them.
@@ -272,8 +273,8 @@ void run(LocateOptions& o, const Common& common) {
     text += fmt::format("bead diameter found from {}: {} px (--diameter)\n", shown, sizes);
   }
   if (!choice.tried.empty()) document["settings_tried"] = settings_as_json(choice, refine);
-  const std::string narrow = narrow_win(choice, refine);
-  text += o.explain ? settings_table(choice, refine) : narrow;
+  const std::string of_settings = settings_warnings(choice, refine);
+  text += o.explain ? settings_table(choice, refine) : of_settings;
   if (refine != locator.refine.method && imaging::model_of(locator.refine) == imaging::DiscModel::circle)
     text += fmt::format(
         "the insides of the discs differ in {}: the discs are fitted by their rims (--refine edges)\n",
@@ -298,7 +299,7 @@ void run(LocateOptions& o, const Common& common) {
                         locator.preprocess.bright ? "brighter" : "darker", shown);
   document["left_out"] = in_words(left_out);
   const std::string warnings = doubts(left_out, beads, bare, static_cast<std::size_t>(n));
-  document["warnings"] = lines_of(narrow + warnings);
+  document["warnings"] = lines_of(of_settings + warnings);
   text += warnings;
   text += o.output + "\n";
   if (view) text += o.view + "\n";

@@ -43,7 +43,7 @@ std::string settings_lead(const imaging::SettingsChoice& choice, const std::stri
   return fmt::format("the best settings with other discs have {:.0f} nats less: {}\n", lead, other);
 }
 
-std::string narrow_win(const imaging::SettingsChoice& choice, const std::string& refine) {
+std::string settings_warnings(const imaging::SettingsChoice& choice, const std::string& refine) {
   std::string text;
   if (const std::size_t k = imaging::narrow_runner_up(choice); k > 0)
     text += fmt::format("other settings explain the picture nearly as well; compare --overlay with: {}\n",
@@ -53,8 +53,7 @@ std::string narrow_win(const imaging::SettingsChoice& choice, const std::string&
       }))
     text +=
         "objects that are not round explain more of the picture than the beads do: check --overlay; "
-        "--explain "
-        "lists them\n";
+        "--explain lists them\n";
   return text;
 }
 

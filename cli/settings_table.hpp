@@ -23,7 +23,7 @@ std::string settings_lead(const imaging::SettingsChoice& choice, const std::stri
 
 /// Warnings: a sentence with the options of the runner-up if the chosen settings won narrowly, and a sentence
 /// if objects that are not round explain more. Empty if there is no reason for doubt.
-std::string narrow_win(const imaging::SettingsChoice& choice, const std::string& refine);
+std::string settings_warnings(const imaging::SettingsChoice& choice, const std::string& refine);
 
 /// List of objects with "options", "evidence", "beads" and "chosen"; in the order of the table.
 nlohmann::json settings_as_json(const imaging::SettingsChoice& choice, const std::string& refine);

@@ -399,7 +399,7 @@ void add_series(std::vector<Series>& all, const std::string& title, const std::v
   if (!solid.x.empty()) all.push_back(solid);
 }
 
-figure_style::Axis w_axis() {
+analysis::figure_style::Axis w_axis() {
   return {.label = "W = V_p^2/(d g)", .logarithmic = true};
 }
 
@@ -424,9 +424,9 @@ analysis::Figure series_figure(SeriesFigure figure, const std::vector<Series>& a
     }
     f.data += "\n\n";
     const std::string look =
-        s.line    ? fmt::format("lines lt {} lw {} dt {}", turn + 1, figure_style::kCurve, s.dash)
+        s.line    ? fmt::format("lines lt {} lw {} dt {}", turn + 1, analysis::figure_style::kCurve, s.dash)
         : s.solid ? fmt::format("points lt {} pt {}", turn + 1,
-                                figure_style::unfilled(figure_style::series_point(turn)))
+                                analysis::figure_style::unfilled(analysis::figure_style::series_point(turn)))
                   : fmt::format("{} lt {}", bars ? "yerrorbars" : "points", turn + 1);
     clauses.push_back(
         fmt::format("'{}.dat' index {} using {} with {} {}", f.name, clauses.size(),
@@ -436,14 +436,15 @@ analysis::Figure series_figure(SeriesFigure figure, const std::vector<Series>& a
   }
   if (clauses.empty()) {  // gnuplot rejects an empty plot
     f.data = "# nothing measured\n";
-    f.plot = figure_style::axes(figure.x, figure.y) +
+    f.plot = analysis::figure_style::axes(figure.x, figure.y) +
              "set label 'not measured at this budget' at graph 0.5,0.5 center\nplot NaN notitle\n";
     return f;
   }
   if (any_solid) clauses.emplace_back("keyentry with points pt 6 lc rgb '#555555' title 'open: solid bed'");
   clauses.insert(clauses.end(), figure.entries.begin(), figure.entries.end());
-  f.plot = figure_style::axes(figure.x, figure.y) + figure_style::panel_title(figure.panel, figure.title) +
-           figure.marks + fmt::format("plot {}\n", fmt::join(clauses, ", \\\n     "));
+  f.plot = analysis::figure_style::axes(figure.x, figure.y) +
+           analysis::figure_style::panel_title(figure.panel, figure.title) + figure.marks +
+           fmt::format("plot {}\n", fmt::join(clauses, ", \\\n     "));
   return f;
 }
 

@@ -148,7 +148,8 @@ void add_contacts(Reproduction& r, json& measured) {
                                           form.beta * 1e-3, w * 1e-3);
     const std::string look =
         fmt::format("lc rgb '{}'", pair ? analysis::colours::kBlue : analysis::colours::kVermilion);
-    const int symbol = figure_style::unfilled(pair ? figure_style::kCircle : figure_style::kTriangle);
+    const int symbol = analysis::figure_style::unfilled(pair ? analysis::figure_style::kCircle
+                                                             : analysis::figure_style::kTriangle);
     key += fmt::format("{}keyentry with points pt {} {} title '{}'", key.empty() ? "" : ", ", symbol, look,
                        kind);
     const std::string range = fmt::format("[0:{:.6g}]", 1e3 * c.t_c);
@@ -157,7 +158,8 @@ void add_contacts(Reproduction& r, json& measured) {
           "{0}'p1-appendix-a.dat' index {1} using 1:{2} with points pt {3} ps 0.7 {4} notitle, {5} {6} with "
           "lines lw "
           "{7} {4} notitle",
-          clauses.empty() ? "" : ", ", index, column, symbol, look, range, curve, figure_style::kLine);
+          clauses.empty() ? "" : ", ", index, column, symbol, look, range, curve,
+          analysis::figure_style::kLine);
     };
     clause(clauses_overlap, 2, fmt::format("{:.9g}*{}", 1e4 / w, wave));
     clause(clauses_force, 3,
@@ -172,19 +174,20 @@ void add_contacts(Reproduction& r, json& measured) {
   // Figure of overlap and force against time.
   analysis::Figure f{.name = "p1-appendix-a", .title = "One collision", .width = 720, .height = 400};
   f.data = data;
-  const figure_style::Panels panels(1, 2, f.width, f.height, 1);
-  figure_style::Axis time{.label = "t / 10^{-3} t_0", .low = 0},
+  const analysis::figure_style::Panels panels(1, 2, f.width, f.height, 1);
+  analysis::figure_style::Axis time{.label = "t / 10^{-3} t_0", .low = 0},
       overlap{.label = "overlap δ / 10^{-4} σ", .low = 0},
       force{.label = "normal force F_n / 10^2 m g", .low = -1};
   time.show(1e3 * kContacts[1].t_c);
   overlap.show(10);
   force.show(10);
-  f.plot = figure_style::Panels::begin() + panels.panel(0) + figure_style::axes(time, overlap) +
-           figure_style::panel_title('a', "overlap") + "plot " + clauses_overlap + "\n" + panels.panel(1) +
-           figure_style::axes(time, force) + figure_style::panel_title('b', "force") +
-           "set xzeroaxis lw 1 lc rgb '#444444'\nplot " + clauses_force + "\n" +
+  f.plot = analysis::figure_style::Panels::begin() + panels.panel(0) +
+           analysis::figure_style::axes(time, overlap) + analysis::figure_style::panel_title('a', "overlap") +
+           "plot " + clauses_overlap + "\n" + panels.panel(1) + analysis::figure_style::axes(time, force) +
+           analysis::figure_style::panel_title('b', "force") + "set xzeroaxis lw 1 lc rgb '#444444'\nplot " +
+           clauses_force + "\n" +
            panels.end({key, fmt::format("keyentry with lines lw {} lc rgb '#333333' title 'closed form'",
-                                        figure_style::kCurve)});
+                                        analysis::figure_style::kCurve)});
   f.caption = fmt::format(
       "A bead meets another, and a wall, with unit speed. Points: run with Verlet steps, n = {:g}; lines: "
       "closed "
@@ -294,7 +297,7 @@ void add_measures(Reproduction& r, json& measured) {
   // Figure of s_b against Gamma.
   analysis::Figure f{
       .name = "p1-appendix-b", .title = "s_b of a rigid inelastic bed", .width = 640, .height = 480};
-  figure_style::Axis strength{.label = "Γ = A ω^2/g"}, s_b{.label = "s_b/σ", .logarithmic = true};
+  analysis::figure_style::Axis strength{.label = "Γ = A ω^2/g"}, s_b{.label = "s_b/σ", .logarithmic = true};
   for (const auto& [at, variance, rest_form] : kTable) {
     strength.show(at);
     s_b.show(variance);
@@ -311,7 +314,8 @@ void add_measures(Reproduction& r, json& measured) {
       "phases', "
       "'' using 1:5 with lines lw 1.3 lc rgb vermilion notitle, '' using 1:3 with points pt 6 ps 0.9 lc rgb "
       "vermilion title 'about the height at rest'\n",
-      gamma, analysis::kBouncingThreshold, f.name, figure_style::axes(strength, s_b), figure_style::kStated);
+      gamma, analysis::kBouncingThreshold, f.name, analysis::figure_style::axes(strength, s_b),
+      analysis::figure_style::kStated);
   f.caption =
       "s_b (eq. B4) of a completely inelastic rigid bed, found by the analysis of a synthetic trajectory "
       "(points) "

@@ -100,8 +100,8 @@ analysis::Figure figure_of(const Packings& all) {
         "rgb '#888888' front\nplot '{4}.dat' index {5} using 1:2:3 with circles fs solid border lc rgb "
         "'#333333' fc rgb '{6}'\nunset object 1\nunset object 2\n",
         left, left + 0.29, kSide,
-        figure_style::panel_title("ab"[index], fmt::format("orientation {}", o.name)), f.name, index,
-        o.colour);
+        analysis::figure_style::panel_title("ab"[index], fmt::format("orientation {}", o.name)), f.name,
+        index, o.colour);
     ++index;
   }
   // Right panel: shares of the orientations in the random beds.
@@ -122,15 +122,16 @@ analysis::Figure figure_of(const Packings& all) {
         "1./3 "
         "with lines {7} notitle, 2./3 with lines {7} notitle\n",
         static_cast<double>(all.random.size()) + 0.7,
-        figure_style::panel_title('c', fmt::format("random, N_l = {}", all.layers)), f.name, index, kB.colour,
-        kBetween, kA.colour, figure_style::kStated);
+        analysis::figure_style::panel_title('c', fmt::format("random, N_l = {}", all.layers)), f.name, index,
+        kB.colour, kBetween, kA.colour, analysis::figure_style::kStated);
   }
   const auto box = [](const char* colour, const char* title) {
     return fmt::format("keyentry with boxes lc rgb '{}' title '{}'", colour, title);
   };
-  f.plot += figure_style::Panels(1, 3, f.width, f.height, 1)
-                .end({box(kA.colour, "A"), box(kBetween, "between"), box(kB.colour, "B"),
-                      fmt::format("keyentry with lines {} title 'by chance'", figure_style::kStated)});
+  f.plot +=
+      analysis::figure_style::Panels(1, 3, f.width, f.height, 1)
+          .end({box(kA.colour, "A"), box(kBetween, "between"), box(kB.colour, "B"),
+                fmt::format("keyentry with lines {} title 'by chance'", analysis::figure_style::kStated)});
   f.caption =
       "(a), (b) Crystals in the two orientations at the side wall and the floor. (c) Of the ordered beads "
       "(psi6 > "

@@ -353,7 +353,7 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
 analysis::Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& filmed) {
   analysis::Figure f{
       .name = "p1-fig3", .title = "Onsets of bouncing and convection", .width = 640, .height = 520};
-  figure_style::Axis n_l{.label = "N_l σ"}, gamma{.label = "Γ = A ω^2/g"};
+  analysis::figure_style::Axis n_l{.label = "N_l σ"}, gamma{.label = "Γ = A ω^2/g"};
   gamma.show(1);
   struct Style {
     bool random, convecting;
@@ -389,7 +389,7 @@ analysis::Figure figure_of(const std::deque<Boundary>& all, const std::vector<Fi
       plot += fmt::format("{}'{}.dat' index {} using 1:2:3:4 with {} lc rgb '{}' {}",
                           plot.empty() ? "" : ", ", f.name, index++, drawn, style.colour, title);
     };
-    add(values, fmt::format("yerrorlines lw {} ps 1.2 pt {}", figure_style::kLine, style.point),
+    add(values, fmt::format("yerrorlines lw {} ps 1.2 pt {}", analysis::figure_style::kLine, style.point),
         fmt::format("title '{}'", style.title));
     add(limits, "vectors head filled lw 1.5", "notitle");
   }
@@ -410,7 +410,7 @@ analysis::Figure figure_of(const std::deque<Boundary>& all, const std::vector<Fi
   };
   add_filmed(&Filmed::convection, 5, "convection, experiment");
   add_filmed(&Filmed::bouncing, 4, "bouncing, experiment");
-  plot += ", " + figure_style::stated_line_entry("paper: K_m = 3.3");
+  plot += ", " + analysis::figure_style::stated_line_entry("paper: K_m = 3.3");
   // K_m = Gamma^2 at omega = 1: the ticks of K_m are at Gamma = sqrt(K_m).
   std::vector<std::string> ticks;
   for (const double k_m : {1.0, 2.0, 4.0, 6.0, 9.0, 12.0, 16.0, 20.0, 25.0})
@@ -419,8 +419,8 @@ analysis::Figure figure_of(const std::deque<Boundary>& all, const std::vector<Fi
       "{}set link y2\nset y2label 'K_m = A^2 ω^2/(σ g)'\nset ytics nomirror\nset y2tics ({})\nset key "
       "maxcols 2\n"
       "{}plot {}\n",
-      figure_style::axes(n_l, gamma), fmt::join(ticks, ", "),
-      figure_style::stated_y(std::sqrt(kConvectionKm) / kOmega), plot);
+      analysis::figure_style::axes(n_l, gamma), fmt::join(ticks, ", "),
+      analysis::figure_style::stated_y(std::sqrt(kConvectionKm) / kOmega), plot);
   f.caption =
       "Onset of bouncing (open) and of convection (filled) against the height of the bed, from random starts "
       "(triangles) and from crystals (circles), drawn a little to the left and to the right, with 95 % "

@@ -133,7 +133,7 @@ std::string region(const char* name, double from, double to) {
 
 analysis::Figure figure_of(const StrengthSweeps& all, const std::optional<calibration::CurveFit>& bend) {
   analysis::Figure f{.name = "p1-fig4", .title = "Granular temperature", .width = 720, .height = 450};
-  figure_style::Axis k_m{.label = "K_m = A^2 ω^2/(σ g)", .logarithmic = true},
+  analysis::figure_style::Axis k_m{.label = "K_m = A^2 ω^2/(σ g)", .logarithmic = true},
       t_g{.label = "T_g/(m g σ)", .logarithmic = true};
   for (const StrengthSweep* l : {&all.random, &all.crystal})
     for (const SweepPoint& r : l->points) {
@@ -142,8 +142,8 @@ analysis::Figure figure_of(const StrengthSweeps& all, const std::optional<calibr
       t_g.show(t.value);
       t_g.show(t.high.value_or(t.value));
     }
-  const figure_style::Panels panels(1, 2, f.width, f.height, 3);
-  f.plot = figure_style::Panels::begin() + figure_style::axes(k_m, t_g);
+  const analysis::figure_style::Panels panels(1, 2, f.width, f.height, 3);
+  f.plot = analysis::figure_style::Panels::begin() + analysis::figure_style::axes(k_m, t_g);
   const double last = k_m.with_margin().high, floor = t_g.with_margin().low;
   // One panel per start: points, borders of the regions, fitted line.
   int index = 0;
@@ -158,10 +158,10 @@ analysis::Figure figure_of(const StrengthSweeps& all, const std::optional<calibr
     if (l->points.empty()) f.data += "? ? ? ? ?\n";
     f.data += "\n\n";
     f.plot += panels.panel(static_cast<std::size_t>(index)) + "unset arrow\nunset label\n" +
-              figure_style::panel_title(
+              analysis::figure_style::panel_title(
                   l->is_random() ? 'a' : 'b',
                   fmt::format("{}, N_l = {}", l->is_random() ? "random" : "crystal", all.layers));
-    if (l->is_random()) f.plot += figure_style::stated_x(kBreak);
+    if (l->is_random()) f.plot += analysis::figure_style::stated_x(kBreak);
     if (l->convection) {
       f.plot += border_of_region(l->convection->value) + region("B", l->convection->value, last);
       const double a_from = 1.35;
@@ -176,7 +176,8 @@ analysis::Figure figure_of(const StrengthSweeps& all, const std::optional<calibr
       const double x = parameter(*bend, "x_b").value, y = std::log(bend->at(x));
       f.plot += fmt::format("f(x) = exp({:.8g} + (x < {:.8g} ? {:.8g} : {:.8g})*log(x/{:.8g}))\n", y, x,
                             parameter(*bend, "s_1").value, parameter(*bend, "s_2").value, x);
-      law = fmt::format(", [1.4:*] f(x) with lines lw {} lc rgb '#333333' notitle", figure_style::kCurve);
+      law = fmt::format(", [1.4:*] f(x) with lines lw {} lc rgb '#333333' notitle",
+                        analysis::figure_style::kCurve);
     }
     f.plot += l->points.empty()
                   ? std::string("plot NaN notitle\n")
@@ -185,10 +186,11 @@ analysis::Figure figure_of(const StrengthSweeps& all, const std::optional<calibr
                         f.name, index, symbol_of(*l), colour_of(*l), law);
     ++index;
   }
-  f.plot += panels.end(
-      {key_of_starts(),
-       fmt::format("keyentry with lines lw {} lc rgb '#333333' title 'two power laws'", figure_style::kCurve),
-       key_of_border(), figure_style::stated_line_entry("paper: bend at K_m = 3.3")});
+  f.plot +=
+      panels.end({key_of_starts(),
+                  fmt::format("keyentry with lines lw {} lc rgb '#333333' title 'two power laws'",
+                              analysis::figure_style::kCurve),
+                  key_of_border(), analysis::figure_style::stated_line_entry("paper: bend at K_m = 3.3")});
   f.caption =
       "T_g* against K_m from random beds (a) and crystals (b), mean over runs with 95 % intervals. Thin "
       "dashed: "

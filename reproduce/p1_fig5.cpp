@@ -14,7 +14,7 @@ namespace {
 constexpr double kBarrier = 7, kBarrierError = 1;           ///< random, and crystal in B
 constexpr double kNucleation = 130, kNucleationError = 20;  ///< crystal in A2
 
-constexpr int kLimitSymbol = figure_style::unfilled(figure_style::kDown);
+constexpr int kLimitSymbol = analysis::figure_style::unfilled(analysis::figure_style::kDown);
 
 /// Points with slips. Rows of beads slip together, so the scatter is not binomial and all points have equal
 /// weight.
@@ -150,8 +150,8 @@ std::string lines_of(const std::optional<calibration::CurveFit>& fit,
     mean_ln_y += std::log(p.y) / static_cast<double>(points.size());
   }
   return line_of(std::log(fit->at(1.0)) + e.value, e.value, from, to,
-                 fmt::format("lw {} lc rgb '#333333'", figure_style::kCurve)) +
-         line_of(mean_ln_y + paper * mean_x, paper, from, to, figure_style::kStated);
+                 fmt::format("lw {} lc rgb '#333333'", analysis::figure_style::kCurve)) +
+         line_of(mean_ln_y + paper * mean_x, paper, from, to, analysis::figure_style::kStated);
 }
 
 /// "E_b = 10.6 (paper 7)" at a place of the panel.
@@ -164,9 +164,9 @@ std::string barrier_label(const char* of, const std::optional<calibration::Curve
 
 analysis::Figure figure_of(const StrengthSweeps& all, const Barriers& fits) {
   analysis::Figure f{.name = "p1-fig5", .title = "Slip probability", .width = 720, .height = 430};
-  const figure_style::Panels panels(1, 2, f.width, f.height, 2);
-  f.plot = figure_style::Panels::begin();
-  figure_style::Axis p_s{.label = "p_s", .logarithmic = true};
+  const analysis::figure_style::Panels panels(1, 2, f.width, f.height, 2);
+  f.plot = analysis::figure_style::Panels::begin();
+  analysis::figure_style::Axis p_s{.label = "p_s", .logarithmic = true};
   for (const StrengthSweep* l : {&all.random, &all.crystal})
     for (const SweepPoint& r : l->points)
       if (r.eligible > 0) p_s.show(r.slips > 0 ? r.p_s() : r.upper_limit());
@@ -176,7 +176,7 @@ analysis::Figure figure_of(const StrengthSweeps& all, const Barriers& fits) {
   // lines.
   int index = 0;
   for (const StrengthSweep* l : {&all.random, &all.crystal}) {
-    figure_style::Axis inverse{.label = "1/K_m", .low = 0};
+    analysis::figure_style::Axis inverse{.label = "1/K_m", .low = 0};
     std::string counted, none;
     for (const SweepPoint& r : l->points) {
       if (!(r.eligible > 0)) continue;
@@ -190,9 +190,9 @@ analysis::Figure figure_of(const StrengthSweeps& all, const Barriers& fits) {
         fmt::format("# {}: 1/K_m, p_s\n{}\n\n# {}, no slip: 1/K_m, 95 % upper limit of p_s\n{}\n\n", l->start,
                     counted.empty() ? "? ?\n" : counted, l->start, none.empty() ? "? ?\n" : none);
     const double last = l->points.empty() ? 30 : l->points.back().k_m(), first = 1.34;
-    f.plot += panels.panel(static_cast<std::size_t>(index / 2)) + figure_style::axes(inverse, p_s) +
+    f.plot += panels.panel(static_cast<std::size_t>(index / 2)) + analysis::figure_style::axes(inverse, p_s) +
               "unset arrow\nunset label\n" +
-              figure_style::panel_title(
+              analysis::figure_style::panel_title(
                   l->is_random() ? 'a' : 'b',
                   fmt::format("{}, N_l = {}", l->is_random() ? "random" : "crystal", all.layers));
     std::string lines;
@@ -233,8 +233,9 @@ analysis::Figure figure_of(const StrengthSweeps& all, const Barriers& fits) {
   f.plot += panels.end(
       {key_of_starts(),
        fmt::format("keyentry with points pt {} lc rgb '#333333' title 'no slip: limit'", kLimitSymbol),
-       fmt::format("keyentry with lines lw {} lc rgb '#333333' title 'Arrhenius law'", figure_style::kCurve),
-       key_of_border(), figure_style::stated_line_entry("paper’s E_b")});
+       fmt::format("keyentry with lines lw {} lc rgb '#333333' title 'Arrhenius law'",
+                   analysis::figure_style::kCurve),
+       key_of_border(), analysis::figure_style::stated_line_entry("paper’s E_b")});
   f.caption =
       "Slip probability against 1/K_m from random beds (a) and crystals (b), counted over all runs; open "
       "symbols: no "

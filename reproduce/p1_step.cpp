@@ -217,7 +217,8 @@ std::string json_of(const Values& values) {
   return json_text(all);
 }
 
-constexpr int kVerlet = figure_style::kCircle, kSplit = figure_style::unfilled(figure_style::kSquare);
+constexpr int kVerlet = analysis::figure_style::kCircle,
+              kSplit = analysis::figure_style::unfilled(analysis::figure_style::kSquare);
 constexpr const char* kStepTics = "set xtics (6.37, 12.5, 25, 50, 100, 200, 400)\n";
 
 /// Curves over n: Verlet with filled symbols and solid lines, split with open symbols and dashed lines, one
@@ -226,16 +227,16 @@ analysis::Figure figure_of(const Values& values, const Size& size) {
   analysis::Figure f{
       .name = "p1-step", .title = "What the step does to the physics", .width = 720, .height = 1160};
   const double finest = size.split.back();
-  const figure_style::Panels panels(kQuantities.size(), kStarts.size(), f.width, f.height, 2);
-  f.plot = figure_style::Panels::begin();
-  figure_style::Axis steps{.label = "steps per contact n", .logarithmic = true};
+  const analysis::figure_style::Panels panels(kQuantities.size(), kStarts.size(), f.width, f.height, 2);
+  f.plot = analysis::figure_style::Panels::begin();
+  analysis::figure_style::Axis steps{.label = "steps per contact n", .logarithmic = true};
   for (const std::string& integrator : kIntegrators)
     for (const double n : size.steps(integrator)) steps.show(n);
   int block = 0;
   std::size_t panel = 0;
   for (const Quantity& q : kQuantities)
     for (const std::string& start : kStarts) {
-      figure_style::Axis value{.label = q.label};
+      analysis::figure_style::Axis value{.label = q.label};
       if (!q.relative) value.show(0);
       std::vector<std::string> curves;
       for (std::size_t g = 0; g < kGammas.size(); ++g)
@@ -259,19 +260,19 @@ analysis::Figure figure_of(const Values& values, const Size& size) {
           const bool verlet = integrator == "verlet";
           curves.push_back(fmt::format(
               "'{}.dat' index {} using 1:2:3:4 with yerrorlines pt {} ps 0.7 lw {} dt {} lc rgb '{}' notitle",
-              f.name, block++, verlet ? kVerlet : kSplit, figure_style::kLine, verlet ? 1 : 2,
+              f.name, block++, verlet ? kVerlet : kSplit, analysis::figure_style::kLine, verlet ? 1 : 2,
               analysis::colours::kCurves[g]));
         }
       if (curves.empty()) curves.emplace_back("NaN notitle");
-      f.plot += panels.panel(panel) + figure_style::axes(steps, value) + kStepTics +
-                figure_style::panel_title(static_cast<char>('a' + panel), words_of(start)) +
+      f.plot += panels.panel(panel) + analysis::figure_style::axes(steps, value) + kStepTics +
+                analysis::figure_style::panel_title(static_cast<char>('a' + panel), words_of(start)) +
                 fmt::format("plot {}\n", fmt::join(curves, ", \\\n     "));
       ++panel;
     }
   std::vector<std::string> key;
   for (std::size_t g = 0; g < kGammas.size(); ++g)
-    key.push_back(fmt::format("keyentry with lines lw {} lc rgb '{}' title 'Γ = {:g}'", figure_style::kCurve,
-                              analysis::colours::kCurves[g], kGammas[g]));
+    key.push_back(fmt::format("keyentry with lines lw {} lc rgb '{}' title 'Γ = {:g}'",
+                              analysis::figure_style::kCurve, analysis::colours::kCurves[g], kGammas[g]));
   key.push_back(fmt::format("keyentry with linespoints pt {} lc rgb '#333333' title 'Verlet'", kVerlet));
   key.push_back(fmt::format("keyentry with linespoints pt {} dt 2 lc rgb '#333333' title 'split'", kSplit));
   f.plot += panels.end(key);

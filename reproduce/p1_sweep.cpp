@@ -356,7 +356,7 @@ const char* colour_of(const StrengthSweep& sweep) {
   return sweep.is_random() ? kRandomColour : kCrystalColour;
 }
 int symbol_of(const StrengthSweep& sweep) {
-  return sweep.is_random() ? figure_style::kTriangle : figure_style::kCircle;
+  return sweep.is_random() ? analysis::figure_style::kTriangle : analysis::figure_style::kCircle;
 }
 std::string border_of_region(double x) {
   return fmt::format("set arrow from first {0:.5g},graph 0 to first {0:.5g},graph 1 nohead {1}\n", x,
@@ -366,7 +366,7 @@ std::string key_of_starts() {
   return fmt::format(
       "keyentry with points pt {} lc rgb '{}' title 'random', keyentry with points pt {} lc rgb '{}' title "
       "'crystal'",
-      figure_style::kTriangle, kRandomColour, figure_style::kCircle, kCrystalColour);
+      analysis::figure_style::kTriangle, kRandomColour, analysis::figure_style::kCircle, kCrystalColour);
 }
 std::string key_of_border() {
   return fmt::format("keyentry with lines {} title 'border of a region'", kBorder);

@@ -101,12 +101,12 @@ Reproduction run(const Request& request) {
   constexpr double kRise = 1.5, kFall = 0.85, kWide = 0.12;
   const auto stated = [&](double x_1, double y_1, double x_2, double y_2) {
     figure.marks += fmt::format("set arrow from {:.6g},{:.6g} to {:.6g},{:.6g} nohead back {}\n", x_1, y_1,
-                                x_2, y_2, figure_style::kStated);
+                                x_2, y_2, analysis::figure_style::kStated);
     figure.y.show(y_2);
   };
   if (const auto t = t_z(gas, 0, 0)) {
     stated(kW[0], t->value, kW[2], kRise * t->value);
-    figure.entries = {figure_style::stated_line_entry("paper: +50 %; −15 %")};
+    figure.entries = {analysis::figure_style::stated_line_entry("paper: +50 %; −15 %")};
   }
   for (std::size_t i = 0; i < std::size(kW); ++i)
     if (const auto t = t_z(gas, i, 0))

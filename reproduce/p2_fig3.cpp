@@ -104,7 +104,8 @@ std::vector<analysis::Figure> snapshot_figures(const std::vector<BedSnapshot>& a
             "set size ratio -1\nset xlabel 'x/d'\nset ylabel 'z/d'\nset xrange [{}:{}]\nset yrange "
             "[-1:{:.3g}]\n",
             s.box.lower.x(), s.box.upper.x(), top) +
-        figure_style::panel_title("abc"[k], fmt::format("2D smooth, W = {:.3g}, {}", s.w, kRelations[k])) +
+        analysis::figure_style::panel_title("abc"[k],
+                                            fmt::format("2D smooth, W = {:.3g}, {}", s.w, kRelations[k])) +
         fmt::format(
             "set style fill solid border lc rgb '#444444'\nset cbrange [0:{:.3g}]\nset cblabel 'speed about "
             "the centre of mass/V_p'\nunset key\n"

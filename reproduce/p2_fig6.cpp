@@ -138,9 +138,9 @@ Reproduction run(const Request& request) {
       .caption =
           "Exponent of T_z with V_p, g = 0, lid 10 d above the floor, with 95 % intervals. With k_n ∝ V_p^2 "
           "the runs agree bit for bit, so α is exactly 2. Form of Bhateja et al. 2016, Fig. 6.",
-      .marks = figure_style::stated_y(2) +
+      .marks = analysis::figure_style::stated_y(2) +
                fmt::format("set xlabel offset 0,-0.7\nset bmargin 7\nset xtics ({})\n", ticks),
-      .entries = {figure_style::stated_line_entry("paper: α = 2")}};
+      .entries = {analysis::figure_style::stated_line_entry("paper: α = 2")}};
   for (const double end : {0.6, static_cast<double>(settings.size()) + 0.4}) figure.x.show(end);
   for (const double end : {1.95, 2.05}) figure.y.show(end);
   r.figures = {series_figure(figure, {scaled, fixed})};

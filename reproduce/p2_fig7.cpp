@@ -81,8 +81,8 @@ Reproduction run(const Request& request) {
        .caption =
            "T_z = m <w'^2> over m g times the lift of the centre of mass above its height at rest, with 95 % "
            "intervals. Solid beds, whose lift is 0, have no point. Form of Bhateja et al. 2016, Fig. 7.",
-       .marks = figure_style::stated_x(20),
-       .entries = {figure_style::stated_line_entry("paper: not constant below")}},
+       .marks = analysis::figure_style::stated_x(20),
+       .entries = {analysis::figure_style::stated_line_entry("paper: not constant below")}},
       all)};
   return r;
 }

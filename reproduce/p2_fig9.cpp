@@ -288,8 +288,9 @@ Reproduction run_10(const Request& request) {
     // One range for the three panels, so that they can be compared.
     for (const double end : {0.7, 2.1}) figure.y.show(end);
     if (p.symbol == "N") {
-      figure.marks = "set arrow from 6,1 to 8,1 nohead " + std::string(figure_style::kStated) + "\n";
-      figure.entries = {figure_style::stated_line_entry("paper: about 1 for N ≥ 6")};
+      figure.marks =
+          "set arrow from 6,1 to 8,1 nohead " + std::string(analysis::figure_style::kStated) + "\n";
+      figure.entries = {analysis::figure_style::stated_line_entry("paper: about 1 for N ≥ 6")};
     }
     r.figures.push_back(series_figure(figure, {s}));
   }

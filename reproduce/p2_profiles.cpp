@@ -290,8 +290,8 @@ Reproduction run_12(const Request& request) {
                           "2016, Figs. 12 and 13.",
                           reading.drawn)};
       if (k == 1) {
-        figure.marks = figure_style::stated_band_x(7, 10);
-        figure.entries = {figure_style::stated_band_entry("paper: hottest, N = 4")};
+        figure.marks = analysis::figure_style::stated_band_x(7, 10);
+        figure.entries = {analysis::figure_style::stated_band_entry("paper: hottest, N = 4")};
       }
       r.figures.push_back(series_figure(figure, series));
     }

@@ -179,7 +179,7 @@ analysis::Figure results_figure(const std::string& collected, const FigureOption
   const std::string y = onsets ? fmt::format("{} at the onset of {}", document["onsets"][0].value("key", ""),
                                              document["onsets"][0].value("verdict", ""))
                                : result;
-  figure_style::Axis x_axis{.label = analysis::gnuplot_text(x)},
+  analysis::figure_style::Axis x_axis{.label = analysis::gnuplot_text(x)},
       y_axis{.label = onsets ? analysis::gnuplot_text(y) : analysis::gnuplot_symbol(y)};
   // Curves in the order of their first value of the second axis, not of its text.
   std::vector<std::string> curves;
@@ -220,14 +220,14 @@ analysis::Figure results_figure(const std::string& collected, const FigureOption
     ++block;
   };
   // Without triangles, which are limits.
-  constexpr int kCircle = figure_style::kCircle, kSquare = figure_style::kSquare,
-                kDiamond = figure_style::kDiamond;
+  constexpr int kCircle = analysis::figure_style::kCircle, kSquare = analysis::figure_style::kSquare,
+                kDiamond = analysis::figure_style::kDiamond;
   constexpr std::array kSymbols = {kCircle,
                                    kSquare,
                                    kDiamond,
-                                   figure_style::unfilled(kCircle),
-                                   figure_style::unfilled(kSquare),
-                                   figure_style::unfilled(kDiamond)};
+                                   analysis::figure_style::unfilled(kCircle),
+                                   analysis::figure_style::unfilled(kSquare),
+                                   analysis::figure_style::unfilled(kDiamond)};
   for (std::size_t c = 0; c < curves.size(); ++c) {
     const Rows& r = rows[curves[c]];
     const std::string title =
@@ -238,9 +238,9 @@ analysis::Figure results_figure(const std::string& collected, const FigureOption
     if (r.points > 1) add(r.whole, "1:2", fmt::format("with lines lc rgb '{}' notitle", colour));
     if (r.points > 0)
       add(r.whole, "1:2:3:4",
-          fmt::format("with yerrorbars pt {} ps 1.1 lw {} lc rgb '{}' {}", symbol, figure_style::kLine,
-                      colour, title));
-    constexpr int kUp = figure_style::kTriangle, kDown = figure_style::kDown;
+          fmt::format("with yerrorbars pt {} ps 1.1 lw {} lc rgb '{}' {}", symbol,
+                      analysis::figure_style::kLine, colour, title));
+    constexpr int kUp = analysis::figure_style::kTriangle, kDown = analysis::figure_style::kDown;
     bool named = r.points > 0;
     for (const auto& [data, limit] : {std::pair(&r.lower, kUp), std::pair(&r.upper, kDown)})
       if (!data->empty()) {
@@ -253,8 +253,8 @@ analysis::Figure results_figure(const std::string& collected, const FigureOption
     throw InputError({.file = {}, .key = "the sweep"},
                      "has no value to draw yet; sweep run computes its points.");
   f.title = y + " against " + x;
-  f.plot =
-      fmt::format("{}set key vertical maxrows 4\nplot {}\n", figure_style::axes(x_axis, y_axis), clauses);
+  f.plot = fmt::format("{}set key vertical maxrows 4\nplot {}\n",
+                       analysis::figure_style::axes(x_axis, y_axis), clauses);
   f.caption = y + " with its 95 % intervals.";
   return f;
 }

@@ -8,7 +8,7 @@
 
 #include "analysis/report/colours.hpp"
 
-namespace twincell::figure_style {
+namespace twincell::analysis::figure_style {
 namespace {
 
 struct SeriesStyle {
@@ -219,4 +219,4 @@ std::string Panels::end(const std::vector<std::string>& entries) const {
       key_ / height_, 6 / height_, fmt::join(entries, ", \\\n     "));
 }
 
-}  // namespace twincell::figure_style
+}  // namespace twincell::analysis::figure_style

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace twincell::figure_style {
+namespace twincell::analysis::figure_style {
 
 /// Largest width, px. A page shows wider figures reduced, and their text with them.
 inline constexpr int kWidest = 720;
@@ -83,4 +83,4 @@ class Panels {
   double width_, height_, key_;
 };
 
-}  // namespace twincell::figure_style
+}  // namespace twincell::analysis::figure_style

@@ -13,7 +13,7 @@ namespace twincell::calibration {
 analysis::Figure bounce_figure(const BounceFit& fit) {
   analysis::Figure f{.name = "bounce", .title = "Restitution of each impact", .width = 560, .height = 400};
   f.data = "# speed, e_n, error\n";
-  figure_style::Axis speed{.label = "impact speed"}, e_n{.label = "e_n"};
+  analysis::figure_style::Axis speed{.label = "impact speed"}, e_n{.label = "e_n"};
   for (const double side : {-1.96, 1.96}) e_n.show(fit.restitution + side * fit.restitution_error);
   for (const BounceImpact& i : fit.impacts) {
     speed.show(i.speed);
@@ -27,8 +27,8 @@ analysis::Figure bounce_figure(const BounceFit& fit) {
       "'± 95 %', {:.8g} with lines dt 2 lc rgb blue notitle, 'bounce.dat' using 1:2:3 with yerrorbars "
       "pt 7 lc rgb "
       "'#222222' title 'impacts'\n",
-      figure_style::axes(speed, e_n), fit.restitution, fit.restitution + 1.96 * fit.restitution_error,
-      fit.restitution - 1.96 * fit.restitution_error);
+      analysis::figure_style::axes(speed, e_n), fit.restitution,
+      fit.restitution + 1.96 * fit.restitution_error, fit.restitution - 1.96 * fit.restitution_error);
   f.caption = fmt::format("{} impacts between {} flights", fit.impacts.size(), fit.flights);
   return f;
 }
@@ -36,7 +36,7 @@ analysis::Figure bounce_figure(const BounceFit& fit) {
 analysis::Figure collisions_figure(const FoundCollisions& found, const WaltonFit& fit, double shape) {
   analysis::Figure f{.name = "collisions", .title = "Collisions of two beads", .width = 720, .height = 400};
   double largest = 0;
-  figure_style::Axis speed{.label = "impact speed, σ/t_0", .low = 0},
+  analysis::figure_style::Axis speed{.label = "impact speed, σ/t_0", .low = 0},
       e_n{.label = "e_n", .low = 0, .high = 1}, psi_1{.label = "Ψ_1", .low = 0}, psi_2{.label = "Ψ_2"};
   f.data = "# speed, e_n, psi_1, psi_2\n";
   for (const Impact& i : found.impacts) {
@@ -57,14 +57,16 @@ analysis::Figure collisions_figure(const FoundCollisions& found, const WaltonFit
   psi_1.show(std::min(std::max(largest, 1.0), kShown));
   for (const Impact& i : found.impacts)
     if (i.psi_1 <= kShown) psi_2.show(i.psi_2);
-  const figure_style::Panels panels(1, 2, f.width, f.height, 1);
+  const analysis::figure_style::Panels panels(1, 2, f.width, f.height, 1);
   constexpr const char* kPoints = "with points pt 7 ps 0.4 lc rgb '#222222' notitle";
-  f.plot = figure_style::Panels::begin() + panels.panel(0) + figure_style::axes(speed, e_n) +
-           figure_style::panel_title('a', "restitution") +
+  f.plot = analysis::figure_style::Panels::begin() + panels.panel(0) +
+           analysis::figure_style::axes(speed, e_n) +
+           analysis::figure_style::panel_title('a', "restitution") +
            fmt::format("plot {:.8g} with lines lw 2 lc rgb blue notitle, 'collisions.dat' using 1:2 {}\n",
                        fit.restitution, kPoints) +
-           panels.panel(1) + figure_style::axes(psi_1, psi_2) + "set samples 600\n" +
-           figure_style::panel_title('b', found.spins ? "tangential impact" : "tangential impact: no spins") +
+           panels.panel(1) + analysis::figure_style::axes(psi_1, psi_2) + "set samples 600\n" +
+           analysis::figure_style::panel_title(
+               'b', found.spins ? "tangential impact" : "tangential impact: no spins") +
            fmt::format("plot {}{}\n", curve,
                        found.spins ? fmt::format("'collisions.dat' using 3:4 {}", kPoints) : "NaN notitle") +
            panels.end({"keyentry with lines lw 2 lc rgb blue title 'mean, fit'",

@@ -19,7 +19,7 @@ analysis::Figure drive_fit_figure(const DriveFit& lock) {
            (lock.fit.values[4] * std::sin(2 * theta) + lock.fit.values[5] * std::cos(2 * theta));
     return z;
   };
-  figure_style::Axis phases{.label = "phase of the drive, cycles", .low = 0, .high = 1},
+  analysis::figure_style::Axis phases{.label = "phase of the drive, cycles", .low = 0, .high = 1},
       height{.label = "height, px"}, off{.label = "residual, px"};
   off.show(0);
   std::string kinds[2];
@@ -45,10 +45,10 @@ analysis::Figure drive_fit_figure(const DriveFit& lock) {
       "unset key\n{}set tmargin at screen 0.43\nset bmargin at screen 0.20\n"
       "plot 0 with lines lw {} lc rgb blue, 'plate.dat' index 0 using 1:3 with points pt 7 ps 0.5 lc rgb "
       "'#222222'\nunset multiplot\n",
-      figure_style::axes(phases, height), figure_style::kCurve,
+      analysis::figure_style::axes(phases, height), analysis::figure_style::kCurve,
       others ? ", 'plate.dat' index 2 using 1:2 with points pt 2 ps 0.9 lc rgb vermilion title 'out of lock'"
              : "",
-      figure_style::axes(phases, off), figure_style::kLine);
+      analysis::figure_style::axes(phases, off), analysis::figure_style::kLine);
   f.caption = fmt::format("{} frames locked, {} out of lock", lock.locked, lock.out_of_lock);
   return f;
 }

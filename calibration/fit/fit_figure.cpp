@@ -39,7 +39,7 @@ analysis::Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& p
   std::string used, left_out, limits;
   const std::string x_label = law.axis == Law::Axis::reciprocal ? "1/" + analysis::gnuplot_symbol(x_name)
                                                                 : analysis::gnuplot_symbol(x_name);
-  figure_style::Axis x_axis{.label = x_label, .logarithmic = law.axis == Law::Axis::logarithmic},
+  analysis::figure_style::Axis x_axis{.label = x_label, .logarithmic = law.axis == Law::Axis::logarithmic},
       y_axis{.label = analysis::gnuplot_symbol(y_name), .logarithmic = law.logarithmic},
       off_axis{.label = fit.weighted      ? "residual/error"
                         : law.logarithmic ? "residual in ln y"
@@ -121,9 +121,11 @@ analysis::Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& p
       "plot 0 with lines lw {} lc rgb blue, 'fit.dat' index 0 using 1:5 with impulses lw {} lc rgb grey, "
       "'fit.dat' "
       "index 0 using 1:5 with points pt {} lc rgb '#222222'\nunset multiplot\n",
-      figure_style::axes(x_axis, y_axis), analysis::gnuplot_formula(title.empty() ? law.formula : title),
-      figure_style::kCurve, analysis::gnuplot_text(law_label), figure_style::kCircle, more,
-      figure_style::axes(x_axis, off_axis), figure_style::kLine, figure_style::kLine, figure_style::kCircle);
+      analysis::figure_style::axes(x_axis, y_axis),
+      analysis::gnuplot_formula(title.empty() ? law.formula : title), analysis::figure_style::kCurve,
+      analysis::gnuplot_text(law_label), analysis::figure_style::kCircle, more,
+      analysis::figure_style::axes(x_axis, off_axis), analysis::figure_style::kLine,
+      analysis::figure_style::kLine, analysis::figure_style::kCircle);
   f.plot = reading(name, f.plot);
   f.caption = law.formula + ", fitted to " + fmt::format("{} points", fit.n_used);
   return f;

@@ -4,15 +4,23 @@
 
 #include <numbers>
 
+#include "core/error.hpp"
+
 namespace twincell::imaging {
 
 ShakenCell shaken_cell(const CellDescription& cell) {
   ShakenCell numbers;
   if (cell.scale.sigma_m) numbers.sigma_mm = *cell.scale.sigma_m * 1e3;
-  if (const auto drive = cell.drive()) {
-    numbers.gamma = drive->gamma();
-    if (const auto t0 = cell.scale.t0_s()) numbers.frequency_hz = drive->omega / (2 * std::numbers::pi * *t0);
+  numbers.gamma = cell.drive_spec.gamma;
+  std::optional<Drive> drive;
+  try {
+    drive = cell.drive();
+  } catch (const ConfigError&) {
+    return numbers;  // stated in part: the film gives the rest
   }
+  if (!drive) return numbers;
+  numbers.gamma = drive->gamma();
+  if (const auto t0 = cell.scale.t0_s()) numbers.frequency_hz = drive->omega / (2 * std::numbers::pi * *t0);
   return numbers;
 }
 

@@ -17,7 +17,7 @@ struct ShakenCell {
   std::optional<double> gamma;         ///< A omega^2/g
 };
 
-/// The numbers of a cell description, as far as it states them. \throws ConfigError as CellDescription::drive
+/// The numbers of a cell description, as far as it states them.
 ShakenCell shaken_cell(const CellDescription& cell);
 
 /// One sentence for each number outside the range that shaken beads have: diameters of 0.02 to 100 mm,

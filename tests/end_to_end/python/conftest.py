@@ -34,6 +34,13 @@ def sentence(*words):
     return done.stderr.strip().splitlines()[-1].removeprefix("twincell: "), done.returncode
 
 
+def sentence_of_option(*words):
+    """The same for a refused option, which has no dashes in Python."""
+    said, code = sentence(*words)
+    assert said.startswith("--")
+    return said.removeprefix("--"), code
+
+
 @pytest.fixture(scope="session")
 def scene_file(tmp_path_factory):
     path = tmp_path_factory.mktemp("scene") / "scene.toml"

@@ -7,7 +7,7 @@ import pytest
 pd = pytest.importorskip("pandas")
 
 import twincell  # noqa: E402
-from conftest import DEMO, document, program, sentence  # noqa: E402
+from conftest import DEMO, document, program, sentence_of_option  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -65,11 +65,11 @@ def test_track_is_the_verb_to_the_bit(tmp_path, tracked):
 
 def test_wrong_options_have_the_sentence_of_the_program(tmp_path):
     out = tmp_path / "x.h5"
-    said, _ = sentence("track", DEMO, "-o", out, "--phase-lock", "often")
+    said, _ = sentence_of_option("track", DEMO, "-o", out, "--phase-lock", "often")
     with pytest.raises(ValueError) as raised:
         twincell.track(DEMO, phase_lock="often")
     assert str(raised.value) == said
-    said, _ = sentence("track", DEMO, "-o", out, "--cell", DEMO / "CELL.toml", "--range", 11)
+    said, _ = sentence_of_option("track", DEMO, "-o", out, "--cell", DEMO / "CELL.toml", "--range", 11)
     with pytest.raises(ValueError) as raised:
         twincell.track(DEMO, cell=DEMO / "CELL.toml", range=11)
     assert str(raised.value) == said

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 import twincell
-from conftest import DEMO, document, program, sentence
+from conftest import DEMO, document, program, sentence, sentence_of_option
 
 
 def test_frames_are_lazy_and_those_of_another_reader():
@@ -201,7 +201,7 @@ def test_errors_have_the_sentence_of_the_program(words, call, kind):
 
 
 def test_errors_of_options_have_the_sentence_of_the_program(sim_file):
-    said, code = sentence("analyze", sim_file, "--only", "q7")
+    said, code = sentence_of_option("analyze", sim_file, "--only", "q7")
     with pytest.raises(ValueError) as raised:
         twincell.analyze(sim_file, ["q7"])
     assert str(raised.value) == said and raised.value.exit_code == code

@@ -185,7 +185,10 @@ TEST_F(Dump, MalformedOnesAreRefusedByLine) {
     return text.replace(text.find(from), from.size(), to);
   };
   EXPECT_EQ(refusal(""), "d: the file holds no frame.");
-  EXPECT_EQ(refusal("\x89HDF\n"), "d:1: 'ITEM: TIMESTEP' is missing; this is not a text dump of LAMMPS.");
+  EXPECT_EQ(
+      refusal("\x89HDF\n"),
+      "d:1: 'ITEM: TIMESTEP' is missing; this is not a text dump of LAMMPS. Formats that are read: xyz, "
+      "lammps-dump, gsd, csv, trackmate.");
   EXPECT_EQ(refusal(with("2 2 1\n", "")), "d:10: the file ends where an atom should be.");
   EXPECT_EQ(refusal(good.substr(0, good.find("ITEM: BOX"))), "d:4: the file ends within a frame.");
   EXPECT_EQ(refusal(with("ATOMS id x y", "ATOMS ")),
@@ -214,8 +217,10 @@ TEST_F(Dump, MalformedOnesAreRefusedByLine) {
             "d:20: the columns are not those of the first frame.");
   EXPECT_EQ(refusal(good + frame_text(1, "pp ff pp", "id x y", {})),
             "d:13: the box is not periodic as it was in the first frame.");
-  EXPECT_EQ(refusal(frame_text(0, "ff ff ff", "id x y z", {"1 1 1 0.3"})),
-            "d:10: bead 1 is at z = 0.3, not in the plane z = 0; is this a three-dimensional system "
+  EXPECT_EQ(refusal(frame_text(0, "ff ff ff", "id x y z", {"1 1 1 0.3"})), "accepted");
+  EXPECT_EQ(refusal(frame_text(0, "ff ff ff", "id x y z", {"1 1 1 0.3", "2 3 1 0.5"})),
+            "d:11: bead 2 is at z = 0.5, not in the plane z = 0.3 of the first bead; is this a "
+            "three-dimensional system "
             "(--dimension 3)?");
 }
 

@@ -8,7 +8,7 @@
 
 #include "tests/support/figure_rules.hpp"
 
-namespace twincell::figure_style {
+namespace twincell::analysis::figure_style {
 namespace {
 
 Axis axis(bool logarithmic, double low, double high) {
@@ -102,4 +102,4 @@ TEST(FigureStyle, TheRulesFindWhatTheyAreFor) {
 }
 
 }  // namespace
-}  // namespace twincell::figure_style
+}  // namespace twincell::analysis::figure_style

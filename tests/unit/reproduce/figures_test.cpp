@@ -28,7 +28,7 @@ TEST_P(StoredFigures, KeepTheRulesOfFigures) {
   const Reproduction r = what.run({.stored = document.at("measured").dump()});
   ASSERT_FALSE(r.figures.empty());
   for (const analysis::Figure& f : r.figures) {
-    EXPECT_LE(f.width, figure_style::kWidest) << f.name;
+    EXPECT_LE(f.width, analysis::figure_style::kWidest) << f.name;
     EXPECT_FALSE(f.caption.empty()) << f.name;
     for (const std::string& broken : broken_figure_rules(f.plot)) ADD_FAILURE() << f.name << ": " << broken;
   }
@@ -54,7 +54,7 @@ TEST(CommittedFigures, KeepTheRulesOfFigures) {
     const std::string commands = text_of(entry.path());
     for (const std::string& broken : broken_figure_rules(commands))
       ADD_FAILURE() << entry.path().filename() << ": " << broken;
-    EXPECT_NE(commands.find(figure_style::head()), std::string::npos)
+    EXPECT_NE(commands.find(analysis::figure_style::head()), std::string::npos)
         << entry.path().filename() << " is of another style: reproduce NAME --stored draws it again";
   }
   EXPECT_GT(n, 50U);
