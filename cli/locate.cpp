@@ -182,7 +182,7 @@ void run(LocateOptions& o, const Common& common) {
   // Settings that the user did not give are determined from the first frames.
   imaging::RegionFrames seen(*frames, region);
   imaging::FramesAhead ahead(seen);
-  const auto [locator, settings_index, choice] = imaging::configure_locator(ahead, given);
+  const auto [locator, settings_index, choice] = imaging::configure_locator(ahead, given, common.n_threads());
   const std::int64_t settings_frame = range.number(settings_index);
   std::optional<LocateView> view;
   if (!o.view.empty()) view.emplace(o.locating, region, locator, choice);

@@ -140,7 +140,7 @@ py::object locate_beads_of(const py::object& stack, const imaging::LocatingReque
   const imaging::LocatorConfiguration found = unlocked(callback, [&](Progress& progress) {
     imaging::RegionFrames seen(*frames, region);
     imaging::FramesAhead ahead(seen);
-    imaging::LocatorConfiguration configuration = imaging::configure_locator(ahead, given);
+    imaging::LocatorConfiguration configuration = imaging::configure_locator(ahead, given, n_threads);
     imaging::locate_stack(
         ahead, configuration.locator, n_threads,
         [&](std::int64_t index, const cv::Mat&, const imaging::Located& as_located) {

@@ -59,7 +59,7 @@ void survey_beads(CellSurvey& s, const SurveyOptions& options, const ProgressOf&
     s.size = s.picture.size();
     s.info = frames.info();
     try {
-      const imaging::LocatorConfiguration c = imaging::configure_locator(ahead, given);
+      const imaging::LocatorConfiguration c = imaging::configure_locator(ahead, given, options.threads);
       found = c.locator;
       s.frame = static_cast<std::size_t>(c.frame);
       s.picture = ahead.look(s.frame)->clone();

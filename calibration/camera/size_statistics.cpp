@@ -172,7 +172,7 @@ BeadFrames locate_beads(imaging::FrameSource& frames, const imaging::LocatorOpti
   out.mean_model_error = kDiameterModelError_px;
   out.model_scatter = kDiameterModelScatter_px;
   imaging::FramesAhead ahead(some);
-  const imaging::LocatorOptions locator = imaging::configure_locator(ahead, options).locator;
+  const imaging::LocatorOptions locator = imaging::configure_locator(ahead, options, threads).locator;
   imaging::locate_stack(
       ahead, locator, threads,
       [&](std::int64_t, const cv::Mat&, const imaging::Located& found) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/cancellation.hpp"
+#include "core/in_parallel.hpp"
 #include "core/median.hpp"
 #include "imaging/find/lattice_constant.hpp"
 #include "imaging/find/vote_finder.hpp"
@@ -240,7 +241,7 @@ std::optional<FoundSettings> best_not_round(const SettingsChoice& choice) {
 
 }  // namespace
 
-SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& given) {
+SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& given, int threads) {
   // A frame too small for a disc of the smallest radius contains no information on the size.
   if (given.diameter_px <= 0 && std::min(picture.cols, picture.rows) < 2 * kSmallestRadius) return {};
   // Orientation: canonical, as in `locate`, so that a rotated picture has the same settings.
@@ -255,9 +256,12 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   const std::vector<Hypothesis> all = hypotheses(grey, given, lattice);
   std::optional<FoundSettings> best;
   const auto try_all = [&](const std::vector<Hypothesis>& some) {
-    for (const Hypothesis& h : some) {
-      const Trial trial = settle_plain(grey, given, h);
-      const FoundSettings found{trial.diameter_px, h.bright, trial.explained, {}, {}};
+    std::vector<FoundSettings> settled(some.size());
+    in_parallel(some.size(), threads, [&](std::size_t k) {
+      const Trial trial = settle_plain(grey, given, some[k]);
+      settled[k] = {trial.diameter_px, some[k].bright, trial.explained, {}, {}};
+    });
+    for (const FoundSettings& found : settled) {
       if (found.explained > 0 || given.diameter_px > 0) candidates.push_back(found);
       if (!best || found.explained > best->explained) best = found;
     }
@@ -275,7 +279,7 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   std::vector<FoundSettings> profiles;
   const bool one_size = given.other_diameters_px.empty();
   if (best && one_size && given.refine.method == kExactRefiner.word)
-    if (auto alike = select_profile_model(frame, given, all, *best, lattice, profiles)) best = alike;
+    if (auto alike = select_profile_model(frame, given, all, *best, lattice, threads, profiles)) best = alike;
   if (auto pale = find_pale(grey, given, lattice, best)) best = pale;
   if (best) candidates.insert(candidates.begin(), *best);
   for (const FoundSettings& p : best_profiles(profiles)) candidates.push_back(p);
@@ -288,14 +292,14 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   if (patterned)
     region.picture =
         busiest(frame, std::max(kExaminedSide, static_cast<int>(kAcross * patterned->diameter_px)));
-  std::vector<TriedSettings> tried = try_settings(region, given, candidates);
+  std::vector<TriedSettings> tried = try_settings(region, given, candidates, threads);
   SettingsChoice choice = confirmed(region, given, std::move(tried));
   if (given.diameter_px > 0 || model_of(given.refine) != DiscModel::plain) return choice;
   // Discs of sizes that are not searched for hide rims of the others, which then do not seem round.
   const auto with = [&](const std::vector<FoundSettings>& more) {
     std::vector<TriedSettings> every = choice.tried;
     every.insert(every.end(), choice.not_round.begin(), choice.not_round.end());
-    for (const TriedSettings& t : try_settings(region, given, more)) every.push_back(t);
+    for (const TriedSettings& t : try_settings(region, given, more, threads)) every.push_back(t);
     return confirmed(region, given, std::move(every));
   };
   if (const auto unlike = best_not_round(choice))
@@ -303,7 +307,7 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   if (choice.tried.empty() && one_size && given.refine.method == kExactRefiner.word) {
     region.neighbour_radius_px = kSmallestRadius;
     std::vector<TriedSettings> not_round = std::move(choice.not_round);
-    choice = confirmed(region, given, try_settings(region, given, small_profiles(grey, given)));
+    choice = confirmed(region, given, try_settings(region, given, small_profiles(grey, given), threads));
     if (choice.not_round.empty()) choice.not_round = std::move(not_round);
   }
   if (choice.tried.empty()) return choice;

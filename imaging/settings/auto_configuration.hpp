@@ -32,7 +32,8 @@ std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOp
 
 /// Tries settings for what `given` leaves open (see above), and chooses by the evidence of the picture
 /// (settings_choice.hpp). Empty if no round object stands out.
-SettingsChoice choose_settings(const cv::Mat& grey, const LocatorOptions& given);
+/// \param threads which do not change the result
+SettingsChoice choose_settings(const cv::Mat& grey, const LocatorOptions& given, int threads = 1);
 
 /// The settings chosen by choose_settings: the diameter, the polarity and, with the default refiner, the
 /// disc model. Empty if no round object stands out.

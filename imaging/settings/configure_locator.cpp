@@ -26,7 +26,7 @@ bool is_blank(const cv::Mat& frame) {
 
 /// Examines frames 0, 1, 2, 4, ... until one shows a bead with the settings found in it. The frames are few,
 /// because the search in one frame takes as long as locating many frames.
-LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given) {
+LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given, int threads) {
   constexpr std::size_t kLast = 32;
   std::optional<LocatorOptions> first;  // first settings found, even if they locate no bead
   double not_round = 0;                 // rim variation of other objects
@@ -34,7 +34,7 @@ LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given) {
     const cv::Mat* frame = frames.look(k);
     if (frame == nullptr) break;
     if (is_blank(*frame)) continue;
-    SettingsChoice choice = choose_settings(*frame, given);
+    SettingsChoice choice = choose_settings(*frame, given, threads);
     if (!choice.not_round.empty()) not_round = std::max(not_round, choice.not_round.front().rim_variation);
     if (choice.tried.empty()) continue;
     LocatorOptions settled = completed(choice.tried.front().settings, given);
@@ -62,11 +62,11 @@ LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given) {
 
 }  // namespace
 
-LocatorConfiguration configure_locator(FramesAhead& frames, const LocatorOptions& given) {
+LocatorConfiguration configure_locator(FramesAhead& frames, const LocatorOptions& given, int threads) {
   cv::setNumThreads(1);  // the only thread pool is that of this program
   const cv::Mat* first = frames.look(0);
   if (first == nullptr) return {given, 0, {}};
-  if (given.diameter_px <= 0 || !given.polarity_known) return search(frames, given);
+  if (given.diameter_px <= 0 || !given.polarity_known) return search(frames, given, threads);
   LocatorOptions found = given;
   found.preprocess.contrast = find_contrast(*first, given);
   return {found, 0, {}};

@@ -21,6 +21,7 @@ struct LocatorConfiguration {
 /// model) from the first of frames 0, 1, 2, 4, ... 32 that shows beads (auto_configuration.hpp). If both
 /// diameter and polarity are given, only the contrast is found, from the first frame.
 /// \throws InputError if the stack shows no discs from which a diameter could be estimated
-LocatorConfiguration configure_locator(FramesAhead& frames, const LocatorOptions& given);
+/// \param threads which do not change the result
+LocatorConfiguration configure_locator(FramesAhead& frames, const LocatorOptions& given, int threads = 1);
 
 }  // namespace twincell::imaging

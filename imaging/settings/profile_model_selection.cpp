@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/in_parallel.hpp"
+
 namespace twincell::imaging {
 
 namespace {
@@ -15,7 +17,7 @@ class ProfileModelSearch {
  public:
   ProfileModelSearch(const cv::Mat& grey, const LocatorOptions& given, const FoundSettings& plain)
       : grey_(grey), given_(given), best_{plain.bright, plain.diameter_px} {
-    best_trial_ = tried(best_);
+    best_trial_ = tried(best_, tried_);
   }
 
   /// Every size and polarity whose common profile explains something.
@@ -23,12 +25,14 @@ class ProfileModelSearch {
 
   /// Tries each hypothesis, extended to its rim. A profile has more freedom than a plain disc, so it must be
   /// clearly better than the profile at the size of the plain discs.
-  void try_all(const std::vector<Hypothesis>& all, double lattice) {
+  void try_all(const std::vector<Hypothesis>& all, double lattice, int threads) {
     constexpr double kClearly = 1.25, kNear = 0.15;
     if (best_trial_.overlaps || std::abs(best_.diameter_px - lattice) < kNear * lattice) try_as_plain(best_);
     double to_beat = kClearly * best_trial_.explained;
-    for (Hypothesis h : all) {
-      ProfileTrial trial = extended_to_rim(h);
+    std::vector<Extended> extended(all.size());
+    in_parallel(all.size(), threads, [&](std::size_t k) { extended[k] = extended_to_rim(all[k]); });
+    for (auto& [h, trial, steps] : extended) {
+      keep(steps);
       if (lattice > 0 && trial.looks_plain()) try_as_plain({h.bright, 2 * trial.profile.rim()});
       if (trial.explained <= to_beat) continue;
       to_beat = trial.explained;
@@ -42,11 +46,12 @@ class ProfileModelSearch {
     for (const double ratio : {kWider, kWider * kWider}) {
       Hypothesis wider{best_.bright, ratio * best_.diameter_px};
       if (!allowed(wider)) return;
-      ProfileTrial trial = extended_to_rim(wider);
+      auto [rim, trial, steps] = extended_to_rim(wider);
+      keep(steps);
       if (trial.explained <= best_trial_.explained ||
           trial.profile.rim() <= kWiderRim * best_trial_.profile.rim())
         continue;
-      accept(wider, std::move(trial));
+      accept(rim, std::move(trial));
       return;
     }
   }
@@ -57,7 +62,7 @@ class ProfileModelSearch {
     constexpr double kBetter = 1.1;
     const Hypothesis other{!best_.bright, best_.diameter_px};
     if (!allowed(other)) return;
-    ProfileTrial trial = tried(other);
+    ProfileTrial trial = tried(other, tried_);
     if (trial.explained > kBetter * best_trial_.explained &&
         std::abs(trial.profile.rim() / best_trial_.profile.rim() - 1) < kClose)
       accept(other, std::move(trial));
@@ -92,11 +97,21 @@ class ProfileModelSearch {
   }
 
  private:
-  ProfileTrial tried(const Hypothesis& h) {
+  /// A hypothesis extended to its rim, and what was tried on the way.
+  struct Extended {
+    Hypothesis h;
+    ProfileTrial trial;
+    std::vector<FoundSettings> steps;
+  };
+
+  ProfileTrial tried(const Hypothesis& h, std::vector<FoundSettings>& steps) const {
     ProfileTrial trial = try_profile(grey_, given_, h);
     if (trial.explained > 0)
-      tried_.push_back({h.diameter_px, h.bright, trial.explained, {}, std::string(kProfileRefiner.word)});
+      steps.push_back({h.diameter_px, h.bright, trial.explained, {}, std::string(kProfileRefiner.word)});
     return trial;
+  }
+  void keep(const std::vector<FoundSettings>& steps) {
+    tried_.insert(tried_.end(), steps.begin(), steps.end());
   }
   void accept(const Hypothesis& h, ProfileTrial trial) {
     best_ = h;
@@ -109,20 +124,22 @@ class ProfileModelSearch {
   }
   /// Tries a hypothesis and extends its size to the rim that its profile shows, as long as this explains
   /// more.
-  ProfileTrial extended_to_rim(Hypothesis& h) {
+  [[nodiscard]] Extended extended_to_rim(const Hypothesis& first) const {
     constexpr int kRounds = 2;
-    ProfileTrial trial = tried(h);
+    Extended all{.h = first, .trial = {}, .steps = {}};
+    auto& [h, trial, steps] = all;
+    trial = tried(h, steps);
     for (int round = 0; round < kRounds && trial.explained > 0; ++round) {
       const double rim = trial.profile.rim();
       const bool inverted = trial.profile.at(0.95 * rim) < 0;
       const Hypothesis next{h.bright != inverted, 2 * rim};
       if (!allowed(next) || (!inverted && std::abs(next.diameter_px / h.diameter_px - 1) < kClose)) break;
-      ProfileTrial out = tried(next);
+      ProfileTrial out = tried(next, steps);
       if (out.explained <= trial.explained) break;
       h = next;
       trial = std::move(out);
     }
-    return trial;
+    return all;
   }
   /// Tries plain discs of the size that the profiles show, or as wide as the lattice constant. Where discs
   /// fill the frame as a crystal, a profile cannot distinguish disc from ground: it may fail at the discs and
@@ -145,14 +162,14 @@ class ProfileModelSearch {
 
 std::optional<FoundSettings> select_profile_model(const cv::Mat& frame, const LocatorOptions& given,
                                                   const std::vector<Hypothesis>& all,
-                                                  const FoundSettings& plain, double lattice,
+                                                  const FoundSettings& plain, double lattice, int threads,
                                                   std::vector<FoundSettings>& tried) {
   constexpr int kDiscs = 14;  // discs across the region that is examined
   double largest = plain.diameter_px;
   for (const Hypothesis& h : all) largest = std::max(largest, h.diameter_px);
   const cv::Mat grey = busiest(frame, std::clamp(static_cast<int>(kDiscs * largest), 160, 360));
   ProfileModelSearch search(grey, given, plain);
-  search.try_all(all, lattice);
+  search.try_all(all, lattice, threads);
   std::optional<FoundSettings> found;
   if (!search.found_nothing()) {
     if (!search.plain_suffices()) {

@@ -18,9 +18,10 @@ namespace twincell::imaging {
 /// \param tried every size and polarity whose common profile explains something is added
 /// \param plain the best of the same hypotheses with plain discs
 /// \param lattice the lattice constant, px; 0: none
+/// \param threads which do not change the result
 std::optional<FoundSettings> select_profile_model(const cv::Mat& frame, const LocatorOptions& given,
                                                   const std::vector<Hypothesis>& all,
-                                                  const FoundSettings& plain, double lattice,
+                                                  const FoundSettings& plain, double lattice, int threads,
                                                   std::vector<FoundSettings>& tried);
 
 }  // namespace twincell::imaging

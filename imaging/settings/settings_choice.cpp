@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/in_parallel.hpp"
 #include "imaging/refine/picture_evidence.hpp"
 #include "imaging/refine/profile_fit.hpp"
 #include "imaging/refine/rim_variation.hpp"
@@ -95,16 +96,15 @@ LocatorOptions completed(const FoundSettings& settings, LocatorOptions given) {
 }
 
 std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const LocatorOptions& given,
-                                        const std::vector<FoundSettings>& candidates) {
-  constexpr int kTrialSweeps = 6;  // enough for most discs to be in place
-  std::vector<TriedSettings> tried;
+                                        const std::vector<FoundSettings>& candidates, int threads) {
+  constexpr int kTrialSweeps = 6;    // enough for most discs to be in place
   std::vector<FoundSettings> known;  // before their contrast is measured
-  for (const FoundSettings& c : candidates) {
-    if (std::any_of(known.begin(), known.end(), [&](const FoundSettings& k) { return agree(k, c); }))
-      continue;
-    known.push_back(c);
-    tried.push_back(try_one(region, given, c, kTrialSweeps));
-  }
+  for (const FoundSettings& c : candidates)
+    if (std::none_of(known.begin(), known.end(), [&](const FoundSettings& k) { return agree(k, c); }))
+      known.push_back(c);
+  std::vector<TriedSettings> tried(known.size());
+  in_parallel(known.size(), threads,
+              [&](std::size_t k) { tried[k] = try_one(region, given, known[k], kTrialSweeps); });
   return tried;
 }
 

@@ -31,9 +31,10 @@ LocatorOptions completed(const FoundSettings& settings, LocatorOptions given);
 /// Locates the discs of a region with each of the settings and measures the evidence. Settings that agree to
 /// 1.5 % of the diameters are tried once.
 /// \param candidates the preferred ones first
+/// \param threads which do not change the result
 /// \returns in the same order
 std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const LocatorOptions& given,
-                                        const std::vector<FoundSettings>& candidates);
+                                        const std::vector<FoundSettings>& candidates, int threads);
 
 /// Sorts by evidence and puts the chosen ones first. They are those with the largest evidence, unless the
 /// first in the list, which are preferred, suffice: those with as many sizes must have 1.25 times their

@@ -122,7 +122,7 @@ TrackedStack track_stack(FrameSource& stack, const LocatorOptions& given, LinkOp
   FramesAhead frames(seen);
   const LocatorOptions locator = [&] {
     const Stage configuring(times, "settings");
-    return configure_locator(frames, given).locator;
+    return configure_locator(frames, given, threads).locator;
   }();
   const Detections detected =
       detect(frames, locator, cell, region, witnessed.size(), threads, progress, folder, times);

@@ -37,6 +37,21 @@ void write_discs(const std::string& file) {
 
 }  // namespace
 
+TEST(LocateExplain, ThreadsChangeNoNumberOfWhatWasTried) {
+  const TemporaryFolder folder;
+  const std::string picture = (folder.path() / "discs.png").string(),
+                    table = (folder.path() / "beads.csv").string();
+  write_discs(picture);
+  std::vector<nlohmann::json> tried;
+  for (const char* threads : {"1", "3"}) {
+    const Ran ran = run_program({"locate", picture, "-o", table, "--json", "--threads", threads});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    tried.push_back(nlohmann::json::parse(ran.out)["settings_tried"]);
+    EXPECT_GE(tried.back().size(), 3U);
+  }
+  EXPECT_EQ(tried[0], tried[1]);
+}
+
 TEST(LocateExplain, PrintsWhatWasTriedAndAClearWin) {
   const TemporaryFolder folder;
   const std::string picture = (folder.path() / "discs.png").string(),
