@@ -13,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/counted.hpp"
 #include "core/sha256.hpp"
 #include "core/table.hpp"
 
@@ -297,8 +298,8 @@ MotionRecord read_motion_record(const std::filesystem::path& path, const Scale& 
   const Table table = read_table(path);
   if (table.n_rows() < kFewestRows || table.n_rows() > kMostSamples)
     throw InputError({.file = table.file, .key = {}},
-                     fmt::format("has {} rows; a recorded motion has at least {} and at most {}.",
-                                 table.n_rows(), kFewestRows, kMostSamples));
+                     fmt::format("has {}; a recorded motion has at least {} and at most {}.",
+                                 counted(table.n_rows(), "row"), kFewestRows, kMostSamples));
   const Found time = find(table, kTimes, "times", scale, where);
   Found motion = find(table, kMotions, "the motion", scale, where);
   return {.file = table.file,
