@@ -261,6 +261,7 @@ class Whittaker {
     constexpr double kSecond[kTerms] = {1, -2, 1};
     std::vector<Eigen::Triplet<double>> entries;
     const int size = static_cast<int>(n);
+    entries.reserve(n + n * (kTerms * (kTerms + 1) / 2));
     for (int i = 0; i < size; ++i) entries.emplace_back(i, i, 1);
     for (int k = 0; k + kTerms <= size; ++k)
       for (int i = 0; i < kTerms; ++i)

@@ -197,12 +197,11 @@ std::string Panels::panel(std::size_t i) const {
   constexpr double kLeft = 84, kRight = 16, kTop = 40, kBottom = 64;  // px around the frame of a panel
   const double wide = width_ / static_cast<double>(columns_),
                tall = (height_ - key_) / static_cast<double>(rows_);
-  const double left = wide * static_cast<double>(i % columns_),
-               top = tall * static_cast<double>(i / columns_);
+  const std::size_t row = i / columns_, column = i % columns_;
+  const double left = wide * static_cast<double>(column), top = tall * static_cast<double>(row);
   return fmt::format(
-      "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset tmargin at screen {:.4f}\nset bmargin "
-      "at "
-      "screen {:.4f}\n",
+      "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset tmargin at screen {:.4f}\n"
+      "set bmargin at screen {:.4f}\n",
       (left + kLeft) / width_, (left + wide - kRight) / width_, 1 - (top + kTop) / height_,
       1 - (top + tall - kBottom) / height_);
 }
