@@ -13,7 +13,6 @@ processor time. The values stand side by side: the mean of q6, the distance of t
 no correction for the edges of the bed, so only the bin can be compared), the mean area.
 """
 
-import argparse
 import json
 import statistics
 import subprocess
@@ -118,11 +117,7 @@ def profile_of(program, bed, *words):
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    arguments.add_argument("build", type=lambda path: Path(path).resolve())
-    arguments.add_argument("--json", action="store_true")
-    arguments.add_argument("--beads", type=int, default=1600)
-    arguments.add_argument("--frames", type=int, default=625)
+    arguments = order_peers.arguments_of(__doc__)
     arguments.add_argument("--repetitions", type=int, default=3)
     options = arguments.parse_args()
     program = options.build / "twincell"

@@ -88,13 +88,18 @@ def delaunay(r):
     return q6_of(np.concatenate(pairs), r)
 
 
-def main():
-    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+def arguments_of(description):
+    """The arguments of a benchmark of --frames frames of --beads beads."""
+    arguments = argparse.ArgumentParser(description=description.splitlines()[0])
     arguments.add_argument("build", type=lambda path: Path(path).resolve())
     arguments.add_argument("--json", action="store_true")
     arguments.add_argument("--beads", type=int, default=1600)
     arguments.add_argument("--frames", type=int, default=625)
-    options = arguments.parse_args()
+    return arguments
+
+
+def main():
+    options = arguments_of(__doc__).parse_args()
     r = beds(options.frames, options.beads)
     document = {"bead_frames": int(r.shape[0] * r.shape[1])}
     with tempfile.TemporaryDirectory() as temporary:

@@ -8,6 +8,7 @@
 #include "analysis/colouring/colouring.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
+#include "core/counted.hpp"
 #include "core/output_rules.hpp"
 #include "imaging/drawing/drawing.hpp"
 #include "trajectory/formats/h5md_file.hpp"
@@ -50,8 +51,8 @@ void run(DrawOptions& o, const Common& common) {
                              {"width_px", drawn.size.width},
                              {"height_px", drawn.size.height},
                              {"colour", o.colour}};
-  std::string text = fmt::format("{} frame{}, {} x {} px", drawn.frames, drawn.frames == 1 ? "" : "s",
-                                 drawn.size.width, drawn.size.height);
+  std::string text =
+      fmt::format("{}, {} x {} px", counted(drawn.frames, "frame"), drawn.size.width, drawn.size.height);
   if (o.colour != kPlain) {
     document["range"] = drawn.range;
     text +=

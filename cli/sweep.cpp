@@ -232,12 +232,13 @@ void run_collect(const SweepOptions& options, const Common& common) {
   write_text_file(output, json, collected_product());
   write_text_file(table, csv, Product::table(csv));
   if (!pooled.empty()) write_text_file(pooled_table, pooled, Product::table(pooled));
+  const nlohmann::json document = nlohmann::json::parse(json);
   // Curves of results that the plan does not name are not missed.
-  if (const auto outside = sweep::results_outside_csv(schedule); !plan.results.empty() && !outside.empty())
+  if (const auto outside = sweep::results_outside_csv(document); !plan.results.empty() && !outside.empty())
     note(common,
          fmt::format("no single numbers, so only in {}: {}.", output.string(), fmt::join(outside, ", ")));
   if (!schedule.all()) note(common, "not all points are done; the file states how many are open.");
-  print_result(common, nlohmann::json::parse(json),
+  print_result(common, document,
                fmt::format("{}{}\n{}\n{}", collected_text(schedule), output.string(), table.string(),
                            pooled.empty() ? "" : pooled_table.string() + "\n"));
 }

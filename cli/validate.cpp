@@ -1,12 +1,11 @@
 // twincell validate FILE: checks that a trajectory file is complete and conforms to H5MD.
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <memory>
 
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
@@ -32,8 +31,7 @@ void add_validate(CLI::App& program, Common& common) {
     for (const auto& fault : faults) text += options->file + ": " + fault + "\n";
     print_result(common, {{"file", options->file}, {"conforms", faults.empty()}, {"faults", faults}}, text);
     if (!faults.empty())
-      throw InputError({options->file, 0, 0, ""},
-                       fmt::format("{} fault{} found.", faults.size(), faults.size() == 1 ? "" : "s"));
+      throw InputError({options->file, 0, 0, ""}, counted(faults.size(), "fault") + " found.");
   });
 }
 

@@ -223,10 +223,9 @@ std::string collected_csv(const Schedule& schedule) {
                   {"replica", "seed", "answer", "n_cycles", "failed"});
 }
 
-std::vector<std::string> results_outside_csv(const Schedule& schedule) {
+std::vector<std::string> results_outside_csv(const json& collected) {
   std::set<std::string> names;
-  const json document = document_of(schedule);
-  for (const json& point : document["points"]) {
+  for (const json& point : collected["points"]) {
     if (!point.contains("results")) continue;
     for (const auto& [name, result] : point["results"].items())
       if (result.contains("value") && result["value"].is_array()) names.insert(name);

@@ -2,6 +2,7 @@
 /// \file
 /// Collected results of a sweep as JSON, CSV or text.
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,8 @@ std::string collected_csv(const Schedule& schedule);
 
 /// Names of the results that are no single numbers, such as spectra and tensors, and that collected_csv()
 /// therefore leaves out, in alphabetical order.
-std::vector<std::string> results_outside_csv(const Schedule& schedule);
+/// \param collected the parsed text of collected_json()
+std::vector<std::string> results_outside_csv(const nlohmann::json& collected);
 
 /// CSV of `pooled`, one line per set of axes; empty if no point has two runs.
 std::string pooled_csv(const Schedule& schedule);
