@@ -65,8 +65,8 @@ void add_points(Blocks& blocks, const Comparison& c) {
       if (p.phase == sign.phase) rows += fmt::format("{} {}\n", p.n_l, p.gamma);
     if (!rows.empty())
       blocks.add(rows, "1:2",
-                 fmt::format("with points pt {} ps {} lc rgb {} title '{} (sweep)'", sign.symbol, size,
-                             sign.colour, phase_name(sign.phase)));
+                 fmt::format("with points pt {} ps {} lc rgb {} title '{}: run of a sweep'", sign.symbol,
+                             size, sign.colour, phase_name(sign.phase)));
   }
 }
 
@@ -80,7 +80,7 @@ void add_onsets(Blocks& blocks, const Comparison& c, double aside) {
   };
   std::map<std::string, Group> groups;
   for (const PhaseBoundary& b : c.boundaries) {
-    Group& g = groups[fmt::format("onset of {}, {}", phase_name(b.onset), boundary_of(b))];
+    Group& g = groups[fmt::format("{}: {}", phase_name(b.onset), boundary_of(b))];
     g.onset = b.onset;
     g.sweep = b.sweep;
     constexpr int kOpenCircle = 6, kCircle = 7, kSquare = 5;
@@ -120,7 +120,7 @@ void add_onsets(Blocks& blocks, const Comparison& c, double aside) {
 }  // namespace
 
 Figure boundary_figure(const Comparison& c) {
-  Figure f{.name = "boundaries", .title = "Phase boundaries", .width = 540, .height = 560};
+  Figure f{.name = "boundaries", .title = "Phase boundaries", .width = 580, .height = 560};
   Limits x, y;
   for (const SweepPoint& p : c.sweep) {
     x.add(p.n_l);
@@ -146,7 +146,8 @@ Figure boundary_figure(const Comparison& c) {
   f.caption =
       "Onsets of bouncing and of convection over the number of layers, with their intervals. Open circle: "
       "experiment (drawn a little to the left); filled circle: simulation (a little to the right); square: "
-      "fitted by a sweep. A triangle that points up marks a lower limit, one that points down an upper "
+      "fitted by a sweep, whose single runs are the small signs. A triangle that points up marks a lower "
+      "limit, one that points down an upper "
       "limit.";
   return f;
 }

@@ -72,7 +72,8 @@
   }
 
   // Runs at one N_l and Gamma lie side by side: the experiments to the left, the simulations to the right. Offsets in units of N_l.
-  function spread(step) {
+  // A group is at most `widest` wide.
+  function spread(most, widest) {
     const groups = new Map(), offset = runs.map(() => 0);
     runs.forEach((r, i) => {
       const key = `${r.n_l.toPrecision(2)} ${r.gamma.toFixed(2)}`;
@@ -80,6 +81,7 @@
     });
     for (const group of groups.values()) {
       group.sort((a, b) => (runs[a].side > runs[b].side) - (runs[a].side < runs[b].side) || a - b);
+      const step = Math.min(most, widest / Math.max(1, group.length - 1));
       group.forEach((i, k) => { offset[i] = (k - (group.length - 1) / 2) * step; });
     }
     return offset;
@@ -91,7 +93,9 @@
     const wide = Math.max(4, 0.12 * (Math.max(...nl) - Math.min(...nl)));
     const x = [Math.max(0, Math.min(...nl) - wide), Math.max(...nl) + wide];
     const pixel = (x[1] - x[0]) / Math.max(100, $('phase-diagram').clientWidth - 116);
-    const offset = spread(19 * pixel);
+    // What lies beside a height must not be taken for the next height.
+    const heights = [...new Set(nl)].sort((a, b) => a - b), gaps = heights.slice(1).map((h, i) => h - heights[i]).filter(g => g > 0.1 * heights[0]);
+    const gap = Math.min(...gaps, Infinity), offset = spread(19 * pixel, 0.45 * gap), aside = Math.min(46 * pixel, 0.36 * gap);
     const low = Math.min(...gammas, ...ends), high = Math.max(...gammas, ...ends), pad = Math.max(0.1, 0.1 * (high - low));
     const y = [Math.max(0, low - pad), high + pad];
     const traces = [], shaded = regions(x, y);
@@ -107,7 +111,7 @@
         const of = data.boundaries.filter(b => b.onset === kind && b.of === key && (b.gamma !== null || b.below !== null || b.above !== null));
         if (!of.length) continue;
         const side = of[0].side, colour = sideColour[side], open = side === 'experiment' ? '-open' : '';
-        const shift = (side === 'experiment' ? -1 : 1) * 46 * pixel * (of[0].sweep ? 0 : 1);
+        const shift = (of[0].sweep ? 0 : side === 'experiment' ? -1 : 1) * aside;
         const place = b => b.gamma !== null ? b.gamma : b.below !== null ? b.below : b.above;
         traces.push({x: of.map(b => Math.max(x[0], b.n_l + shift)), y: of.map(place), mode: of.length > 1 ? 'lines+markers' : 'markers', name: `onset of ${kind}, ${plain(key)}`,
           text: of.map(b => b.gamma !== null ? `Γ = ${+b.gamma.toPrecision(3)} [${+b.low.toPrecision(3)}, ${+b.high.toPrecision(3)}]` : b.below !== null ? `Γ above ${b.below}` : `Γ below ${b.above}`),

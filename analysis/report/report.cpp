@@ -63,16 +63,18 @@ std::string phases_of(const std::vector<Run>& runs, const std::vector<std::size_
 /// How many numbers differ really, and the first of them by name.
 std::string real_differences(const Comparison& c) {
   constexpr std::size_t kMostNamed = 5;
+  const bool heights = several_heights(c.matches);
   std::vector<std::string> names;
   for (const Difference& d : c.differences)
-    if (d.is_real()) names.push_back(fmt::format("{} at Gamma {:.3g}", d.quantity, c.matches[d.match].gamma));
+    if (d.is_real())
+      names.push_back(fmt::format("{} at {}", d.quantity, condition_text(c.matches[d.match], heights)));
   if (c.differences.empty()) return {};
   if (names.empty())
     return fmt::format("None of the {} compared numbers differs really.", c.differences.size());
   const std::size_t n = names.size();
   if (n > kMostNamed) names.resize(kMostNamed);
   return fmt::format("{} of the {} compared numbers differ{} really: {}{}.", n, c.differences.size(),
-                     n == 1 ? "s" : "", fmt::join(names, ", "),
+                     n == 1 ? "s" : "", fmt::join(names, heights ? "; " : ", "),
                      n > kMostNamed ? fmt::format(" and {} more", n - kMostNamed) : "");
 }
 
@@ -89,6 +91,7 @@ std::vector<std::string> conclusion_sentences(const Comparison& c) {
   const std::vector<Run>& runs = c.runs;
   const std::vector<Match>& matches = c.matches;
   if (runs.empty() && (!c.sweep.empty() || !c.boundaries.empty())) return {conclusion_of_sweep(c)};
+  const bool heights = several_heights(matches);
   std::vector<std::string> differ, open;
   std::size_t paired = 0, same = 0;
   for (const Match& match : matches) {
@@ -100,12 +103,14 @@ std::vector<std::string> conclusion_sentences(const Comparison& c) {
       continue;
     }
     (word == "differ" ? differ : open)
-        .push_back(fmt::format("Gamma {:.3g} ({} in the experiment, {} in the simulation)", match.gamma,
-                               phases_of(runs, match.experiments), phases_of(runs, match.simulations)));
+        .push_back(fmt::format("{} ({} in the experiment, {} in the simulation)",
+                               condition_text(match, heights), phases_of(runs, match.experiments),
+                               phases_of(runs, match.simulations)));
   }
   if (paired == 0) return {"No drive strength was run on both sides."};
   std::vector<std::string> text = {
-      fmt::format("Same phase on both sides at {} of {} drive strengths.", same, paired)};
+      fmt::format("Same phase on both sides at {} of {} {}.", same, paired,
+                  heights ? "points (drive strength and height)" : "drive strengths")};
   if (!differ.empty()) text.push_back(fmt::format("They differ at {}.", fmt::join(differ, "; ")));
   if (!open.empty()) text.push_back(fmt::format("Undetermined at {}.", fmt::join(open, "; ")));
   for (std::string& onset : onset_sentences(c.boundaries)) text.push_back(std::move(onset));
@@ -166,7 +171,8 @@ std::string runs_csv(const std::vector<Run>& runs) {
 /// One line per match and number; an empty field is a value that was not determined.
 std::string differences_csv(const Comparison& c) {
   std::string text =
-      "gamma,number,unit,experiment,experiment_error,simulation,simulation_error,difference,filmed,camera,"
+      "gamma,n_l,number,unit,experiment,experiment_error,simulation,simulation_error,difference,filmed,"
+      "camera,"
       "statistics,"
       "seeds,tracers,defects,remainder,error,attribution\n";
   const auto part = [](const std::optional<double>& v) {
@@ -174,8 +180,8 @@ std::string differences_csv(const Comparison& c) {
   };
   for (const Difference& d : c.differences)
     text +=
-        fmt::format("{:.9g},{},{},{:.9g},{},{:.9g},{},{:.9g},{},{},{},{},{},{},{:.9g},{},{}\n",
-                    c.matches[d.match].gamma, d.quantity, d.unit, d.experiment.value,
+        fmt::format("{:.9g},{:.9g},{},{},{:.9g},{},{:.9g},{},{:.9g},{},{},{},{},{},{},{:.9g},{},{}\n",
+                    c.matches[d.match].gamma, c.matches[d.match].n_l, d.quantity, d.unit, d.experiment.value,
                     part(d.experiment.error), d.simulation.value, part(d.simulation.error), d.difference(),
                     part(d.filmed), part(d.camera), part(d.statistics), part(d.seeds), part(d.tracers),
                     part(d.defects), d.remainder(), part(d.error()), csv_field(d.attribution()));
@@ -249,7 +255,7 @@ std::string verdict_table(const std::vector<Run>& runs, const std::vector<Match>
     table.row(fmt::format(" data-run=\"{}\"{}", first, word == "differ" ? " class=\"differ\"" : ""));
     table.cell(match.gamma);
     table.cell(runs[first].k_m);
-    table.cell(runs[first].n_l);
+    table.cell(match.n_l);
     table.cell(chips(runs, match.experiments));
     table.cell(chips(runs, match.simulations));
     table.cell(word == "differ" ? "<strong>differ</strong>" : word);
@@ -341,12 +347,14 @@ std::string composition(const Difference& d) {
 }
 
 std::string differences_table(const Comparison& c) {
-  Table table("differences", {"Γ", "number", "unit", "experiment", "simulation", "difference", "what is left",
-                              "error", "in errors", "made of", "attributed to"});
+  Table table("differences",
+              {"Γ", "N<sub>l</sub>", "number", "unit", "experiment", "simulation", "difference",
+               "what is left", "error", "in errors", "made of", "attributed to"});
   for (const Difference& d : c.differences) {
     table.row(fmt::format(" data-run=\"{}\" class=\"{}\"", c.matches[d.match].experiments.front(),
                           d.is_real() ? "real" : "agrees"));
     table.cell(c.matches[d.match].gamma);
+    table.cell(c.matches[d.match].n_l);
     table.cell(typeset(d.quantity));
     table.cell(html_text(d.unit));
     table.cell(with_error(d.experiment), "nowrap");
@@ -527,11 +535,16 @@ std::vector<Section> sections_of(const Comparison& c, const std::vector<Figure>&
   return list;
 }
 
-/// "a cell 10 σ wide, N_l = 10", of the first run; empty without runs.
+/// "cell 10 σ wide, N_l = 6 and 10": the width of the first run, all heights; "sweep" without runs.
 std::string cell_words(const Comparison& c) {
   if (c.runs.empty()) return "sweep";
-  const Run& run = c.runs.front();
-  return fmt::format("cell {:.3g} σ wide, N_l = {:.3g}", run.box.size().x(), run.n_l);
+  std::vector<double> heights;
+  for (const Match& match : c.matches)
+    if (std::none_of(heights.begin(), heights.end(), [&](double h) { return same_height(h, match.n_l); }))
+      heights.push_back(match.n_l);
+  std::sort(heights.begin(), heights.end());
+  return fmt::format("cell {:.3g} σ wide, N_l = {:.3g}", c.runs.front().box.size().x(),
+                     fmt::join(heights, " and "));
 }
 
 /// The conclusion as the box that opens the page. Its class says by colour whether the sides agree.
@@ -594,6 +607,7 @@ nlohmann::json differences_json(const std::vector<Difference>& differences,
   };
   for (const Difference& d : differences)
     list.push_back({{"gamma", matches[d.match].gamma},
+                    {"n_l", matches[d.match].n_l},
                     {"number", d.quantity},
                     {"unit", d.unit},
                     {"experiment", measured(d.experiment)},
@@ -642,7 +656,7 @@ std::string phases_text(const Comparison& c) {
   for (const Match& match : c.matches) {
     const Run& any =
         c.runs[match.experiments.empty() ? match.simulations.front() : match.experiments.front()];
-    text += fmt::format("{:>7.3f}  {:>7.3f}  {:>6.2f}  {:<22}  {:<22}  {}\n", match.gamma, any.k_m, any.n_l,
+    text += fmt::format("{:>7.3f}  {:>7.3f}  {:>6.2f}  {:<22}  {:<22}  {}\n", match.gamma, any.k_m, match.n_l,
                         phases_of(c.runs, match.experiments), phases_of(c.runs, match.simulations),
                         verdict_word(c.runs, match));
   }

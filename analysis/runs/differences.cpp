@@ -251,17 +251,36 @@ std::vector<Difference> find_differences(const std::vector<Run>& runs, const std
   return differences;
 }
 
+namespace {
+/// The columns Gamma and, for beds of several heights, N_l.
+class Conditions {
+ public:
+  explicit Conditions(const std::vector<Match>& matches) : heights_(several_heights(matches)) {}
+  [[nodiscard]] std::string head() const { return row("Gamma", "N_l"); }
+  [[nodiscard]] std::string of(const Match& match) const {
+    return row(fmt::format("{:.3f}", match.gamma), fmt::format("{:.3g}", match.n_l));
+  }
+
+ private:
+  [[nodiscard]] std::string row(const std::string& gamma, const std::string& n_l) const {
+    return fmt::format("{:>7}", gamma) + (heights_ ? fmt::format("{:>6}", n_l) : std::string());
+  }
+  bool heights_;
+};
+}  // namespace
+
 std::string differences_text(const std::vector<Difference>& differences, const std::vector<Match>& matches) {
   if (differences.empty()) return {};
   const auto part = [](const std::optional<double>& v) {
     return v ? fmt::format("{:.3g}", *v) : std::string("-");
   };
-  std::string text = fmt::format("{:>7}  {:<22}{:>11}{:>11}{:>11}{:>10}{:>10}{:>10}{:>10}  {}\n", "Gamma",
-                                 "number", "experiment", "simulation", "difference", "camera", "statist.",
-                                 "seeds", "tracers", "attributed to");
+  const Conditions conditions(matches);
+  std::string text = fmt::format("{}  {:<22}{:>11}{:>11}{:>11}{:>10}{:>10}{:>10}{:>10}  {}\n",
+                                 conditions.head(), "number", "experiment", "simulation", "difference",
+                                 "camera", "statist.", "seeds", "tracers", "attributed to");
   for (const Difference& d : differences)
-    text += fmt::format("{:>7.3f}  {:<22}{:>11.4g}{:>11.4g}{:>11.3g}{:>10}{:>10}{:>10}{:>10}  {}\n",
-                        matches[d.match].gamma, d.quantity, d.experiment.value, d.simulation.value,
+    text += fmt::format("{}  {:<22}{:>11.4g}{:>11.4g}{:>11.3g}{:>10}{:>10}{:>10}{:>10}  {}\n",
+                        conditions.of(matches[d.match]), d.quantity, d.experiment.value, d.simulation.value,
                         d.difference(), part(d.camera), part(d.statistics), part(d.seeds), part(d.tracers),
                         d.attribution());
   return text;
@@ -270,6 +289,7 @@ std::string differences_text(const std::vector<Difference>& differences, const s
 std::string real_differences_text(const std::vector<Difference>& differences,
                                   const std::vector<Match>& matches) {
   if (differences.empty()) return {};
+  const Conditions conditions(matches);
   std::string rows;
   std::size_t others = 0;
   for (const Difference& d : differences) {
@@ -278,11 +298,11 @@ std::string real_differences_text(const std::vector<Difference>& differences,
       continue;
     }
     rows +=
-        fmt::format("{:>7.3f}  {:<24}{:>12.4g}{:>12.4g}{:>12.3g}\n           {}\n", matches[d.match].gamma,
+        fmt::format("{}  {:<24}{:>12.4g}{:>12.4g}{:>12.3g}\n           {}\n", conditions.of(matches[d.match]),
                     d.quantity, d.experiment.value, d.simulation.value, d.difference(), d.attribution());
   }
   if (!rows.empty())
-    rows = fmt::format("{:>7}  {:<24}{:>12}{:>12}{:>12}\n", "Gamma", "real difference", "experiment",
+    rows = fmt::format("{}  {:<24}{:>12}{:>12}{:>12}\n", conditions.head(), "real difference", "experiment",
                        "simulation", "difference") +
            rows;
   return rows +

@@ -1,8 +1,9 @@
 #include "analysis/runs/onset_agreement.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <cmath>
+#include <algorithm>
 #include <limits>
 
 namespace twincell::analysis {
@@ -16,19 +17,23 @@ OnsetAgreement agreement_of(const PhaseBoundary& a, const PhaseBoundary& b) {
 }
 
 namespace {
-/// "twins" for simulations that start from a filmed packing, else the side with its kind of start.
-std::string name_of(const PhaseBoundary& b) {
-  if (!b.sweep && b.start == "trajectory") return "twins";
-  return (b.sweep ? "sweep" : side_name(b.side)) + (b.start.empty() ? "" : fmt::format(" ({})", b.start));
-}
+/// What both sides say of one onset, at the heights for which they say the same.
+struct Agreement {
+  BedPhase onset;
+  std::vector<double> heights;  ///< N_l
+  std::string said;
+};
 }  // namespace
 
 std::vector<std::string> onset_sentences(const std::vector<PhaseBoundary>& boundaries) {
-  constexpr double kSameLayers = 0.1;
   const auto same_layers = [](const PhaseBoundary& a, const PhaseBoundary& b) {
-    return std::abs(a.n_l - b.n_l) <= kSameLayers * a.n_l;
+    return same_height(a.n_l, b.n_l);
   };
-  std::vector<std::string> sentences;
+  bool several = false;
+  for (const PhaseBoundary& a : boundaries)
+    for (const PhaseBoundary& b : boundaries)
+      several = several || (a.side == Side::experiment && b.side == Side::experiment && !same_layers(a, b));
+  std::vector<Agreement> agreements;
   for (const PhaseBoundary& e : boundaries) {
     if (e.side != Side::experiment) continue;
     bool twins = false;  // the experiment's own twins come before the beds of a sweep
@@ -41,13 +46,25 @@ std::vector<std::string> onset_sentences(const std::vector<PhaseBoundary>& bound
       if (agreement == OnsetAgreement::unknown) continue;
       const bool open = (!e.above && !s.above) || (!e.below && !s.below);
       const bool compatible = agreement == OnsetAgreement::compatible;
-      sentences.push_back(fmt::format("Onset of {}: Gamma {} in the experiment and {} in the {}, {}.",
-                                      phase_name(e.onset), boundary_text(e), boundary_text(s), name_of(s),
-                                      open         ? "not bracketed on either side"
-                                      : compatible ? "compatible"
-                                                   : "different"));
+      const std::string said = fmt::format("Gamma {} in the experiment and {} in the {}, {}.",
+                                           boundary_text(e), boundary_text(s), boundary_of(s),
+                                           open         ? "not bracketed on either side"
+                                           : compatible ? "compatible"
+                                                        : "different");
+      const auto same = std::find_if(agreements.begin(), agreements.end(), [&](const Agreement& other) {
+        return other.onset == e.onset && other.said == said;
+      });
+      if (same == agreements.end())
+        agreements.push_back({e.onset, {e.n_l}, said});
+      else
+        same->heights.push_back(e.n_l);
     }
   }
+  std::vector<std::string> sentences;
+  for (const Agreement& a : agreements)
+    sentences.push_back(fmt::format(
+        "Onset of {}{}: {}", phase_name(a.onset),
+        several ? fmt::format(" at N_l = {:.3g}", fmt::join(a.heights, " and ")) : std::string(), a.said));
   return sentences;
 }
 

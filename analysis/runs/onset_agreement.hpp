@@ -19,7 +19,8 @@ enum class OnsetAgreement {
 OnsetAgreement agreement_of(const PhaseBoundary& a, const PhaseBoundary& b);
 
 /// One sentence for each onset that experiment and simulation (or, without one, a sweep) both have at one N_l
-/// (within 10 %), with both intervals and their agreement. Empty if no onset has both sides.
+/// (within 10 %), with both intervals and their agreement; equal sentences of several N_l are one. N_l is
+/// named if the experiments have more than one. Empty if no onset has both sides.
 std::vector<std::string> onset_sentences(const std::vector<PhaseBoundary>& boundaries);
 
 }  // namespace twincell::analysis

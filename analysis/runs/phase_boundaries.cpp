@@ -76,8 +76,9 @@ std::vector<PhaseBoundary> find_boundaries(const std::vector<Run>& runs) {
 }
 
 std::string boundary_of(const PhaseBoundary& boundary) {
+  if (!boundary.sweep && boundary.start == "trajectory") return "twins";
   return (boundary.sweep ? "sweep" : side_name(boundary.side)) +
-         (boundary.start.empty() ? "" : ", " + boundary.start);
+         (boundary.start.empty() ? "" : fmt::format(" ({})", boundary.start));
 }
 
 std::string boundary_text(const PhaseBoundary& boundary) {

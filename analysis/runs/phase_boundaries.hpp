@@ -36,7 +36,8 @@ struct PhaseBoundary {
 /// convecting bed also counts as bouncing.
 std::vector<PhaseBoundary> find_boundaries(const std::vector<Run>& runs);
 
-/// Origin of a boundary: "experiment", "simulation", "simulation, random", "sweep, random".
+/// Origin of a boundary: "experiment", "simulation", "simulation (random)", "sweep (random)"; "twins" for
+/// simulations that start from a filmed packing.
 std::string boundary_of(const PhaseBoundary& boundary);
 /// Position of a boundary in Gamma: "1.25 ± 0.35", "above 2.5", "below 0.9".
 std::string boundary_text(const PhaseBoundary& boundary);

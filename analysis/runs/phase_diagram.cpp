@@ -1,5 +1,7 @@
 #include "analysis/runs/phase_diagram.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -67,7 +69,7 @@ std::vector<Match> match_runs(const std::vector<Run>& runs, double tolerance) {
   for (const std::size_t i : order) {
     const auto fits = [&](std::size_t leader) {
       return runs[i].gamma <= runs[leader].gamma * (1 + tolerance) &&
-             std::abs(runs[i].n_l - runs[leader].n_l) <= 0.1 * runs[leader].n_l;
+             same_height(runs[leader].n_l, runs[i].n_l);
     };
     const auto found = std::find_if(leaders.rbegin(), leaders.rend(), fits);
     const auto m =
@@ -79,12 +81,28 @@ std::vector<Match> match_runs(const std::vector<Run>& runs, double tolerance) {
     (runs[i].side == Side::experiment ? matches[m].experiments : matches[m].simulations).push_back(i);
   }
   for (Match& match : matches) {
-    double sum = 0;
-    for (const std::size_t i : match.experiments) sum += runs[i].gamma;
-    for (const std::size_t i : match.simulations) sum += runs[i].gamma;
-    match.gamma = sum / static_cast<double>(match.experiments.size() + match.simulations.size());
+    const auto n = static_cast<double>(match.experiments.size() + match.simulations.size());
+    for (const auto* members : {&match.experiments, &match.simulations})
+      for (const std::size_t i : *members) {
+        match.gamma += runs[i].gamma / n;
+        match.n_l += runs[i].n_l / n;
+      }
   }
   return matches;
+}
+
+bool same_height(double a, double b) {
+  return std::abs(a - b) <= 0.1 * a;
+}
+
+bool several_heights(const std::vector<Match>& matches) {
+  return std::any_of(matches.begin(), matches.end(),
+                     [&](const Match& match) { return !same_height(matches.front().n_l, match.n_l); });
+}
+
+std::string condition_text(const Match& match, bool height) {
+  return fmt::format("Gamma {:.3g}", match.gamma) +
+         (height ? fmt::format(", N_l = {:.3g}", match.n_l) : std::string());
 }
 
 BedPhase common_phase(const std::vector<Run>& runs, const std::vector<std::size_t>& members) {

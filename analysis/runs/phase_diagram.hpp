@@ -67,6 +67,7 @@ Run analyze_run(const TrajectorySource& trajectory, Side side, const AnalysisOpt
 /// Runs of both sides at one drive strength, as indices into the list of runs.
 struct Match {
   double gamma = 0;  ///< mean of the members
+  double n_l = 0;    ///< mean of the members
   std::vector<std::size_t> experiments;
   std::vector<std::size_t> simulations;
 };
@@ -74,6 +75,13 @@ struct Match {
 /// Groups runs whose Gamma agree within the relative `tolerance` (relative to the smallest Gamma of the
 /// group) and whose N_l agree within 10 %, in order of Gamma. A group may have members on one side only.
 std::vector<Match> match_runs(const std::vector<Run>& runs, double tolerance = 0.02);
+
+/// Whether two numbers of layers count as the same height: |a - b| <= a/10.
+bool same_height(double a, double b);
+/// Whether the matches have beds of more than one height.
+bool several_heights(const std::vector<Match>& matches);
+/// "Gamma 2.8"; with `height`, "Gamma 2.8, N_l = 6".
+std::string condition_text(const Match& match, bool height);
 
 /// Common phase of several runs (seeds); undetermined if they disagree or if there are no runs.
 BedPhase common_phase(const std::vector<Run>& runs, const std::vector<std::size_t>& members);

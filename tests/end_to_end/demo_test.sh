@@ -4,9 +4,10 @@
 set -euo pipefail
 report=$2/demo_report
 said=$("$1/data_samples/demo/demo.sh" "$report")
-while IFS=, read -r gamma experiment simulation; do
+while IFS=, read -r gamma n_l experiment simulation; do
   [ "$gamma" != gamma ] || continue
-  grep -Eq "^ *$gamma(0*) .* $experiment +$simulation " <<<"$said" || { echo "Gamma = $gamma is not $experiment / $simulation in:"; echo "$said"; exit 1; }
+  grep -Eq "^ *$gamma(0*) .* $n_l[.]00 +$experiment +$simulation +same$" <<<"$said" ||
+    { echo "Gamma = $gamma, N_l = $n_l is not $experiment / $simulation in:"; echo "$said"; exit 1; }
 done <"$1/data_samples/demo/expected.csv"
 grep -q "^report: $report/report.html$" <<<"$said"
 [ -s "$report/report.html" ]

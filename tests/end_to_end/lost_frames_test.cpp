@@ -66,14 +66,14 @@ TEST(LostFrames, TrackPutsThePhasesRightAndSaysWhere) {
 
 TEST(LostFrames, PhaseLockFoundReadsThePlate) {
   // A convecting bed, whose own cycles differ by two frames.
-  const fs::path stack = kDemo.parent_path() / "gamma-2.5";
+  const fs::path stack = kDemo.parent_path() / "gamma-2.8.tif";
   const TemporaryFolder folder;
-  const Ran ran = run_program({"track", stack, "-o", folder.path() / "t.h5", "--cell", stack / "CELL.toml",
-                               "--phase-lock", "found", "--json"});
+  const Ran ran = run_program({"track", stack, "-o", folder.path() / "t.h5", "--cell",
+                               kDemo.parent_path() / "gamma-2.8.toml", "--phase-lock", "found", "--json"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   const nlohmann::json lock = nlohmann::json::parse(ran.out)["phase_lock"];
   EXPECT_EQ(lock["checked_by"], "the plate");
-  EXPECT_EQ(lock["frames_per_cycle"], 48);
+  EXPECT_EQ(lock["frames_per_cycle"], 40);
   EXPECT_EQ(lock["dropped"], 0);
   EXPECT_EQ(lock["doubled"], 0);
 }

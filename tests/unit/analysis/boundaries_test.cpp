@@ -72,7 +72,7 @@ TEST(Boundaries, LayersAndStartsAreKeptApartAndTheUndeterminedLeftOut) {
   const PhaseBoundary* random = find(all, Side::simulation, kFlow, "random");
   EXPECT_EQ(random->n_runs, 2U);
   EXPECT_DOUBLE_EQ(random->n_l, 20.5);
-  EXPECT_EQ(boundary_of(*random), "simulation, random");
+  EXPECT_EQ(boundary_of(*random), "simulation (random)");
 }
 
 }  // namespace twincell::analysis

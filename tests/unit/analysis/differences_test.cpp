@@ -56,6 +56,22 @@ TEST(Differences, CameraAndRemainderAddUp) {
   EXPECT_NE(d.attribution().find("camera and tracking cause 83 %"), std::string::npos) << d.attribution();
 }
 
+TEST(Differences, TheHeightIsNamedIfThereAreSeveral) {
+  Runs runs = {run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.5, 0.01)};
+  const auto text = [&] {
+    const auto matches = match_runs(runs);
+    return real_differences_text(find_differences(runs, matches, {}), matches);
+  };
+  EXPECT_EQ(text().find("N_l"), std::string::npos) << text();
+  for (const double value : {0.9, 0.4}) {
+    runs.push_back(run(value > 0.5 ? Side::experiment : Side::simulation, value, 0.01));
+    runs.back().n_l = 40;
+  }
+  EXPECT_EQ(text().substr(0, 38), "  Gamma   N_l  real difference        ") << text();
+  EXPECT_NE(text().find("  2.000    20  s_b "), std::string::npos) << text();
+  EXPECT_NE(text().find("  2.000    40  s_b "), std::string::npos) << text();
+}
+
 TEST(Differences, WithinTheErrorTheLargestSourceIsNamed) {
   Runs runs = {run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.8, 0.01),
                run(Side::simulation, 1.2, 0.01), run(Side::simulation, 1.1, 0.01)};

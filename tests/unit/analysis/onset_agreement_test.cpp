@@ -49,6 +49,22 @@ TEST(OnsetAgreement, BedsOfOtherHeightsAreNotCompared) {
   EXPECT_EQ(said({onset(Side::experiment, 1.6, 2.5), onset(Side::simulation, 2.6, 3, 20)}), "");
 }
 
+TEST(OnsetAgreement, HeightsAreNamedIfThereAreSeveral) {
+  const auto both = [](double below, double n_l) {
+    return std::vector{onset(Side::experiment, below, 2.5, n_l), onset(Side::simulation, 1.5, 2.5, n_l)};
+  };
+  const auto joined = [](std::vector<PhaseBoundary> a, const std::vector<PhaseBoundary>& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return said(a);
+  };
+  EXPECT_EQ(joined(both(1.5, 6), both(1.5, 10)),
+            "Onset of convecting at N_l = 6 and 10: Gamma 2 ± 0.5 in the experiment and 2 ± 0.5 in the "
+            "simulation, compatible.");
+  const std::string apart = joined(both(1.5, 6), both(1.7, 10));
+  EXPECT_NE(apart.find("at N_l = 6: Gamma 2 ± 0.5 in the experiment"), std::string::npos) << apart;
+  EXPECT_NE(apart.find("at N_l = 10: Gamma 2.1 ± 0.4 in the experiment"), std::string::npos) << apart;
+}
+
 TEST(OnsetAgreement, ASweepIsUsedWithoutTwins) {
   PhaseBoundary sweep = onset(Side::simulation, 2, 2.2);
   sweep.sweep = true;

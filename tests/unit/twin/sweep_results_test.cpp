@@ -42,7 +42,7 @@ void check(const analysis::Comparison& c) {
   EXPECT_DOUBLE_EQ(c.boundaries[0].gamma().value(), 2.1);  // as fitted, not the middle of its interval
   EXPECT_NEAR(c.boundaries[0].half_width().value(), 0.15, 1e-12);
   EXPECT_EQ(c.boundaries[0].n_runs, 12U);
-  EXPECT_EQ(analysis::boundary_of(c.boundaries[0]), "sweep, random");
+  EXPECT_EQ(analysis::boundary_of(c.boundaries[0]), "sweep (random)");
   EXPECT_FALSE(c.boundaries[1].gamma());
   EXPECT_EQ(analysis::boundary_text(c.boundaries[1]), "above 2.9");
 }
