@@ -74,7 +74,9 @@ nlohmann::json as_json(const twin::Twin& twin) {
           {"phase_lock", json_of(twin.phases)},
           {"position_error", twin.position_error},
           {"beads", twin.beads},
-          {"cycles", twin.cycles}};
+          {"cycles", twin.cycles},
+          {"discarded_cycles", twin.discarded},
+          {"settling_fall", twin.fall}};
 }
 
 std::string as_text(const twin::Twin& twin) {
@@ -108,6 +110,13 @@ twin::Twin add_twin(const Common& common, const MatchOptions& o, const twin::Twi
   twin::Twin twin =
       twin::make_twin(options, folder, provenance_of(common, options, o.locating), progress_bars(common));
   if (!twin.phases.warning.empty()) note(common, twin.phases.warning + ".");
+  if (twin.records_transient())
+    note(common,
+         fmt::format(
+             "{} begins in mid-motion: the beads of its first packing lie {:.2g} sigma above where they "
+             "settle, on average. The twin starts at rest, so its first cycles differ; --set "
+             "time.discard=8 leaves out eight of them.",
+             of_stack.stack.string(), twin.fall));
   comparing.experiments.push_back(twin.experiment);
   comparing.simulations.insert(comparing.simulations.end(), twin.simulations.begin(), twin.simulations.end());
   return twin;

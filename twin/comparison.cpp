@@ -50,15 +50,17 @@ Sides read_sides(const ComparingOptions& options) {
   return sides;
 }
 
-/// Refuses a file on both sides, and two- and three-dimensional runs on one side, whose phase boundaries
-/// would be pooled. Notes what is unusual. \throws ConfigError
-void check_sides(const Sides& sides, const ComparingOptions& options, std::vector<std::string>& notes) {
-  for (const fs::path& experiment : options.experiments)
-    for (const fs::path& simulation : options.simulations)
-      if (std::error_code ec; fs::equivalent(experiment, simulation, ec))
+/// Refuses a run that is on both sides, and two- and three-dimensional runs on one side, whose phase
+/// boundaries would be pooled. Notes what is unusual. \throws ConfigError
+void check_sides(const Sides& sides, std::vector<std::string>& notes) {
+  std::vector<analysis::RunEnds> ends;
+  for (const auto& run : sides.trajectories) ends.emplace_back(*run);
+  for (std::size_t e = 0; e < sides.n_experiments; ++e)
+    for (std::size_t s = sides.n_experiments; s < ends.size(); ++s)
+      if (ends[e].of_same_run(ends[s]))
         throw ConfigError({.file = {}, .key = "--simulation"},
-                          fmt::format("{} is the same file as the experiment {}.", simulation.string(),
-                                      experiment.string()));
+                          fmt::format("{} contains the same run, bead for bead, as the experiment {}.",
+                                      sides.trajectories[s]->name(), sides.trajectories[e]->name()));
   const auto dimension = [&](std::size_t i) { return sides.trajectories[i]->info().box.dimension; };
   for (std::size_t i = 0; i < sides.trajectories.size(); ++i) {
     const H5mdReader& run = *sides.trajectories[i];
@@ -303,7 +305,7 @@ void limit_pictures(std::vector<analysis::Run>& runs) {
 analysis::Comparison compare_runs(const ComparingOptions& options, const ProgressOf& progress,
                                   std::vector<std::string>& notes) {
   const Sides sides = read_sides(options);
-  check_sides(sides, options, notes);
+  check_sides(sides, notes);
   analysis::Comparison c;
   c.runs = analyse(sides, options, progress, notes, c.checks);
   refuse_repeated_runs(c.runs);

@@ -76,20 +76,30 @@ FirstPacking find_first_packing(const TrajectorySource& trajectory) {
   return b;
 }
 
-void simulate(const sim::Scene& scene, const fs::path& output, const TwinProvenance& provenance, int threads,
-              Progress& progress) {
+double mean_height(const std::vector<sim::Bead>& beads) {
+  double sum = 0;
+  for (const sim::Bead& b : beads) sum += b.z;
+  return beads.empty() ? 0 : sum / static_cast<double>(beads.size());
+}
+
+/// Simulates a twin. \returns the mean fall of its beads while they settle, sigma
+double simulate(const sim::Scene& scene, const fs::path& output, const TwinProvenance& provenance,
+                int threads, Progress& progress) {
   sim::RunState start = sim::placed(scene, progress);
   const std::string said = provenance.of_simulation(scene, start.beads);
   // Limit the threads: a small bed on many threads waits for them at every step, and stalls if other programs
   // use the processor.
   const int worth = std::min(threads, sim::threads_for(start.beads.size(), 0));
   sim::Simulation run(scene, std::move(start), sim::SolverKind::best, worth);
+  const double height = mean_height(run.state().beads);
   run.settle(progress);
+  const double fall = height - mean_height(run.state().beads);
   TrajectoryInfo info = run.trajectory_info();
   info.provenance_json = said;
   H5mdWriter writer(output, std::move(info));
   run.run(writer, progress);
   writer.finish();
+  return fall;
 }
 
 /// The cell of the film with everything that a twin needs.
@@ -185,10 +195,8 @@ void track_experiment(imaging::FrameSource& frames, FilmedCell& filmed, calibrat
 }
 
 /// Simulates the scene once from the measured positions, and `options.twins` - 1 times from shifted ones.
-std::vector<fs::path> simulate_twins(const std::string& scene, const Twin& twin, const TwinOptions& options,
-                                     const fs::path& folder, const TwinProvenance& provenance,
-                                     const ProgressOf& progress) {
-  std::vector<fs::path> simulations;
+void simulate_twins(const std::string& scene, Twin& twin, const TwinOptions& options, const fs::path& folder,
+                    const TwinProvenance& provenance, const ProgressOf& progress) {
   for (int k = 1; k <= options.twins; ++k) {
     std::vector<std::string> assignments = options.assignments;
     if (k > 1) {
@@ -196,12 +204,12 @@ std::vector<fs::path> simulate_twins(const std::string& scene, const Twin& twin,
       assignments.push_back(
           fmt::format("start.perturbation={:.9g}", std::min(kLargestShift, twin.position_error)));
     }
-    simulations.push_back(folder / fmt::format("simulation-{}.h5", k));
+    twin.simulations.push_back(folder / fmt::format("simulation-{}.h5", k));
+    const sim::Scene read = sim::read_scene_text(scene, twin.scene.string(), assignments, folder);
     const auto bar = progress(fmt::format("simulating twin {}", k));
-    simulate(sim::read_scene_text(scene, twin.scene.string(), assignments, folder), simulations.back(),
-             provenance, options.threads, *bar);
+    const double fall = simulate(read, twin.simulations.back(), provenance, options.threads, *bar);
+    if (k == 1) twin.fall = fall, twin.discarded = read.discard;
   }
-  return simulations;
 }
 
 }  // namespace
@@ -275,7 +283,7 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
   twin.position_error = first.position_error;
   const std::string scene = std::string(kSceneHead) + scene_text(first.frame, first.cycles);
   write_text_file(twin.scene, scene, Product::text("a scene", kSceneHead));
-  twin.simulations = simulate_twins(scene, twin, options, folder, provenance, progress);
+  simulate_twins(scene, twin, options, folder, provenance, progress);
   return twin;
 }
 

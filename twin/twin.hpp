@@ -61,8 +61,14 @@ struct Twin {
   double position_error = 0;    ///< median uncertainty of a coordinate in the first frame at phase 0, sigma
   std::size_t beads = 0;        ///< beads in that frame
   std::int64_t cycles = 0;      ///< cycles of the simulations
+  std::int64_t discarded = 0;   ///< driven cycles before them that are not recorded
+  double fall = 0;              ///< mean fall of the beads of the first packing while they settle, sigma
   std::string drive;            ///< measured drive in a sentence; empty if the cell states the drive
   imaging::PhaseTable phases;   ///< of the stack
+
+  /// Whether the film begins in mid-motion and the simulations record their way from rest to that motion:
+  /// nothing is discarded and the first packing falls by more than 0.1 sigma.
+  [[nodiscard]] bool records_transient() const { return discarded == 0 && fall > 0.1; }
 };
 
 /// Scene of the twin as TOML: `base` (text of a scene, or empty) with width, sides, drive and scale of the

@@ -270,21 +270,29 @@ std::vector<Result> pool(const std::vector<std::vector<Result>>& runs) {
   return pooled;
 }
 
+RunEnds::RunEnds(const TrajectorySource& run) : n_frames(run.n_frames()) {
+  if (n_frames == 0) return;
+  run.read(0, first);
+  run.read(n_frames - 1, last);
+}
+
+bool RunEnds::of_same_run(const RunEnds& other) const {
+  const auto same = [](const Frame& f, const Frame& g) {
+    return f.position.size() == g.position.size() &&
+           std::equal(f.position.begin(), f.position.end(), g.position.begin(),
+                      [](const Vec3& u, const Vec3& v) { return u == v || (u.hasNaN() && v.hasNaN()); });
+  };
+  return n_frames > 0 && n_frames == other.n_frames && same(first, other.first) && same(last, other.last);
+}
+
 void require_one_condition(const std::vector<const TrajectorySource*>& trajectories) {
   constexpr double kSameDrive = 0.02, kSameBeads = 0.1;
   const auto refuse = [](const TrajectorySource& a, const TrajectorySource& b, const std::string& why) {
     throw ConfigError({.file = b.name(), .key = "conditions"},
                       fmt::format("cannot be pooled with {}: {}", a.name(), why));
   };
-  struct Ends {
-    Frame first, last;
-  };
-  std::vector<Ends> ends;
-  for (const TrajectorySource* t : trajectories) {
-    ends.emplace_back();
-    t->read(0, ends.back().first);
-    t->read(t->n_frames() - 1, ends.back().last);
-  }
+  std::vector<RunEnds> ends;
+  for (const TrajectorySource* t : trajectories) ends.emplace_back(*t);
   for (std::size_t i = 1; i < trajectories.size(); ++i) {
     const TrajectorySource &a = *trajectories.front(), &b = *trajectories[i];
     const TrajectoryInfo &p = a.info(), &q = b.info();
@@ -311,19 +319,11 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
     numbers("the number of beads", static_cast<double>(ends[0].first.n_present()),
             static_cast<double>(ends[i].first.n_present()), kSameBeads);
     words("start:", p.conditions.start, q.conditions.start);
-    // Repeats: first and last frames that agree in every coordinate are those of the same run.
-    for (std::size_t k = 0; k < i; ++k) {
-      const auto same = [](const Frame& f, const Frame& g) {
-        return f.position.size() == g.position.size() &&
-               std::equal(f.position.begin(), f.position.end(), g.position.begin(),
-                          [](const Vec3& u, const Vec3& v) { return u == v || (u.hasNaN() && v.hasNaN()); });
-      };
-      if (trajectories[k]->n_frames() == b.n_frames() && same(ends[k].first, ends[i].first) &&
-          same(ends[k].last, ends[i].last))
+    for (std::size_t k = 0; k < i; ++k)
+      if (ends[k].of_same_run(ends[i]))
         refuse(*trajectories[k], b,
                "both contain the same run, bead for bead; another seed or repeat is needed to measure the "
                "scatter");
-    }
   }
 }
 

@@ -34,6 +34,17 @@ std::vector<Result> pool(const std::vector<std::vector<Result>>& runs);
 /// identical only if they share at least one number that is not a fraction of small integers.
 std::vector<std::size_t> repeated_runs(const std::vector<std::vector<Result>>& runs);
 
+/// First and last frame of a run, by which two files with the same run are recognised.
+struct RunEnds {
+  explicit RunEnds(const TrajectorySource& run);
+  /// Whether both runs have equally many frames, at least one, and their first and last frames agree in every
+  /// coordinate.
+  [[nodiscard]] bool of_same_run(const RunEnds& other) const;
+
+  std::size_t n_frames;
+  Frame first, last;
+};
+
 /// Rejects runs that cannot be pooled. \throws ConfigError with the names of two runs and the property in
 /// which they differ: source, dimension, Gamma, omega or width (2 %), number of beads (10 %), phases per
 /// cycle, kind of start; or if both contain the same run, bead for bead \pre every trajectory has frames

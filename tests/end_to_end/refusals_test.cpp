@@ -80,6 +80,7 @@ class Refusals : public ::testing::Test {
     fs::create_directory(at("folder"));
     put_file(at("folder/mine.txt"), "mine");
     fs::create_symlink(at("t.h5"), at("link.h5"));
+    fs::copy_file(at("t.h5"), at("copy.h5"));
     fs::create_hard_link(at("g.csv"), at("link.csv"));
     fs::create_directory(at("mixed"));
     for (int k = 0; k < 3; ++k)
@@ -335,7 +336,8 @@ TEST_F(Refusals, WordsThatDoNotGoTogether) {
        {table, kInput, {"deep.csv:3", "z = 0.7", "--dimension 3"}},
        {table + "--columns y=x", kUsage, {"--columns", "'x' is both x and y"}},
        {"sweep status @folder", kUsage, {"folder", "plan", "--folder"}},
-       {"compare --experiment @t.h5 --simulation @link.h5 -o @new", kUsage, {"link.h5", "same file"}},
+       {"compare --experiment @t.h5 --simulation @link.h5 -o @new", kUsage, {"link.h5", "same run"}},
+       {"compare --experiment @t.h5 --simulation @copy.h5 -o @new", kUsage, {"copy.h5", "same run"}},
        {"compare --simulation @t.h5 @deep.h5 -o @new", kUsage, {"--simulation", "has 3 dimensions", "has 2"}},
        {"sweep plan @nothing.toml --folder @new", kUsage, {"results", "empty"}}});
 }
