@@ -6,8 +6,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -116,6 +118,16 @@ struct Share {
   double seconds = 1e300;            ///< time limit
 };
 
+/// Processor time of the earlier calls in a folder, which this call resumes, core-minutes; nullopt if it has
+/// runs of a call that did not end, whose time is not recorded.
+std::optional<double> earlier_cost(const fs::path& folder, const Reproducible& what) {
+  const fs::path result = folder / (what.name + ".json");
+  if (!fs::exists(result)) return fs::exists(folder / "points") ? std::nullopt : std::optional(0.0);
+  const auto document = nlohmann::json::parse(read_text_file(result), nullptr, false);
+  if (!document.is_object() || !document.contains("core_minutes")) return std::nullopt;
+  return document["core_minutes"].get<double>();
+}
+
 /// Runs a figure, or judges its stored runs again, and writes its files into `folder`. \returns its document
 /// and text
 std::pair<nlohmann::json, std::string> make(const Reproducible& what, const ReproduceOptions& options,
@@ -130,11 +142,8 @@ std::pair<nlohmann::json, std::string> make(const Reproducible& what, const Repr
     stored = stored_document(from);
   }
   claim_shared_folder(folder, Product::runs());
-  // The cost of earlier calls in this folder, which this call resumes.
-  double core_minutes = 0;
-  const fs::path result = folder / (what.name + ".json");
-  if (!stored && fs::exists(result))
-    core_minutes = nlohmann::json::parse(read_text_file(result), nullptr, false).value("core_minutes", 0.0);
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  double core_minutes = stored ? unknown : earlier_cost(folder, what).value_or(unknown);
   const std::clock_t begin = std::clock();
   SweepWatch watch(common, share.seconds);
   Reproduction r;
@@ -163,12 +172,12 @@ std::pair<nlohmann::json, std::string> make(const Reproducible& what, const Repr
     keep("cheaper", r.cheaper);
     keep("complete", r.complete);
     keep("runs", r.runs);
-    core_minutes = stored->value("core_minutes", 0.0);
+    core_minutes = stored->value("core_minutes", unknown);
   }
   for (Target& t : r.targets)
     if (t.runs.empty() && t.verdict != reproduce::Verdict::absent) t.runs = r.runs;
   nlohmann::json document = as_json(r, folder);
-  if (core_minutes > 0) document["core_minutes"] = core_minutes;
+  if (std::isfinite(core_minutes)) document["core_minutes"] = core_minutes;
   document["provenance"] = nlohmann::json::parse(common.provenance().to_json());
   const std::string text = as_text(r, folder);
   {

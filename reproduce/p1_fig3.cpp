@@ -39,13 +39,14 @@ struct Size {
 /// s_c is defined over N_f = 200 cycles, and at N_l = 20 half of the random beds need more than 60 cycles to
 /// decide. A budget that is too small for 200 cycles at several heights therefore pays for one height. N_l =
 /// 20 runs first, so that a slow machine still gives a partial result.
-const std::array<Size, 6>& sizes() {
-  static const std::array<Size, 6> all = {{
+const std::array<Size, 7>& sizes() {
+  static const std::array<Size, 7> all = {{
       {0, {20}, 30, 100, 30, 0.05, 0.4},
       {20, {20}, 30, 200, 40, 0.05, 0.3},
       {60, {10, 20}, 30, 200, 40, 0.05, 0.3},
       {240, {10, 20, 40}, 50, 200, 40, 0.04, 0.25},
       {1000, {10, 20, 40, 60}, 50, 200, 50, 0.03, 0.2},
+      {2500, {10, 20, 40, 60, 80}, 50, 200, 50, 0.03, 0.2},
       {1e300, {10, 20, 40, 60, 80}, 100, 200, 60, 0.02, 0.15},
   }};
   return all;
