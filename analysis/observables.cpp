@@ -105,8 +105,7 @@ AnalysisContext make_context(const TrajectorySource& trajectory, const AnalysisO
   const TracerChoice choice = choose_tracers(info, frame, {options.tracers, options.tracer_band});
   context.tracers = choice.slots;
   context.tracer_choice = choice.how;
-  if (choice.slots.empty())
-    context.no_tracers = info.tracer.empty() ? choice.how : "the trajectory marks no bead as a tracer";
+  if (choice.slots.empty()) context.no_tracers = choice.how;
   const auto plate = plate_height(info, frame);
   double sum = 0;
   std::size_t n = 0;

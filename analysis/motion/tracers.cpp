@@ -108,14 +108,11 @@ TracerChoice choose_tracers(const TrajectoryInfo& info, const Frame& first, cons
                       "tracers are chosen by ids or by a band; state only one");
   if (!wish.ids.empty()) return of_ids(info, wish.ids);
   if (wish.band) return in_band(info, first, *wish.band);
-  TracerChoice choice;
-  if (!info.tracer.empty()) {
-    for (std::size_t i = 0; i < info.tracer.size(); ++i)
-      if (info.tracer[i] != 0) choice.slots.push_back(i);
-    choice.how = "tracers as marked in the trajectory";
-    return choice;
-  }
-  return line_of_tracers(info, first, 0);
+  TracerChoice marked{.slots = {}, .how = "tracers as marked in the trajectory"};
+  for (std::size_t i = 0; i < info.tracer.size(); ++i)
+    if (info.tracer[i] != 0) marked.slots.push_back(i);
+  // A tracked stack of beads that all look alike has the marks, and none is set.
+  return marked.slots.empty() ? line_of_tracers(info, first, 0) : marked;
 }
 
 TracerChoice line_of_tracers(const TrajectoryInfo& info, const Frame& first, double above) {

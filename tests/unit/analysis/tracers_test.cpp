@@ -51,6 +51,13 @@ TEST(Tracers, MarkedOnesAreTaken) {
   EXPECT_EQ(choose_tracers(bed.info(), bed.frames().front()).slots, (std::vector<std::size_t>{3, 17}));
 }
 
+TEST(Tracers, MarksOfWhichNoneIsSetAreNoChoice) {
+  MemoryTrajectory bed = test::rigid_bed({.gamma = 1.5, .columns = 20, .rows = 11});
+  const std::vector<std::size_t> line = choose_tracers(bed.info(), bed.frames().front()).slots;
+  bed.info().tracer.assign(bed.info().n_beads, 0);
+  EXPECT_EQ(choose_tracers(bed.info(), bed.frames().front()).slots, line);
+}
+
 TEST(Tracers, GivenByIdOrByBand) {
   const MemoryTrajectory bed = test::rigid_bed({.gamma = 1.5, .columns = 20, .rows = 11});
   const Frame& first = bed.frames().front();
