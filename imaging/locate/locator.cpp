@@ -123,6 +123,16 @@ std::vector<Proposal> propose_all(const Prepared& image, const LocatorOptions& o
   return choose ? assign_sizes(image, all) : all;
 }
 
+/// Scales the radii so that a disc as large as the profile has the radius of the profile's rim.
+void stretch_to_rim(std::vector<Detection>& beads, const DiscProfile& profile) {
+  const double rim = profile.rim();
+  if (!(rim > 0)) return;
+  for (Detection& b : beads) {
+    b.radius *= rim / profile.radius_px;
+    b.sigma_radius *= rim / profile.radius_px;
+  }
+}
+
 }  // namespace
 
 LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) {
@@ -161,6 +171,8 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
         drop_unlike(grey, result.judged.beads, result.judged.dropped, radius);
     result.judged.dropped.insert(result.judged.dropped.end(), unlike.begin(), unlike.end());
   }
+  if (options.rim_radii && refiner.model == DiscModel::shared_profile)
+    stretch_to_rim(result.judged.beads, result.refined.profile);
   result.reports.push_back({"judge", watch.lap(), result.judged.beads.size()});
   return result;
 }

@@ -30,6 +30,9 @@ struct LocatorOptions {
   FindOptions find;      ///< its radius is set from the diameters
   RefineOptions refine;  ///< its other radii are set from the diameters
   JudgeOptions judge;
+  /// With DiscModel::shared_profile, the radii are those of the rims. false: relative to diameter_px, as the
+  /// tests of hypotheses compare them. The fit itself determines profile and radii up to a common stretch.
+  bool rim_radii = true;
   /// \throws ConfigError naming the option and its bound
   void check() const;
 };

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/median.hpp"
 #include "imaging/refine/rim_variation.hpp"
 #include "imaging/settings/auto_configuration.hpp"
 #include "imaging/settings/find_contrast.hpp"
@@ -22,6 +23,16 @@ bool is_blank(const cv::Mat& frame) {
   double low = 0, high = 0;
   cv::minMaxLoc(frame, &low, &high);
   return low == high;
+}
+
+/// The settings with the diameter of the rims, unless they then locate fewer discs. A profile describes discs
+/// of another diameter as well, so that the evidence hardly determines it.
+LocatorOptions at_rim(const cv::Mat& frame, LocatorOptions settled, const std::vector<Detection>& beads) {
+  std::vector<double> radii;
+  for (const Detection& b : beads) radii.push_back(b.radius);
+  LocatorOptions rim = settled;
+  rim.diameter_px = std::clamp(2 * upper_median(std::move(radii)), 3.0, 400.0);
+  return locate(frame, rim).beads.size() >= beads.size() ? rim : settled;
 }
 
 /// Examines frames 0, 1, 2, 4, ... until one shows a bead with the settings found in it. The frames are few,
@@ -41,7 +52,10 @@ LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given, in
     if (model_of(settled.refine) == DiscModel::circle)
       settled.preprocess.contrast = find_contrast(*frame, settled);
     if (!first) first = settled;
-    if (locate(*frame, settled).beads.empty()) continue;
+    const std::vector<Detection> beads = locate(*frame, settled).beads;
+    if (beads.empty()) continue;
+    if (given.diameter_px <= 0 && model_of(settled.refine) == DiscModel::shared_profile)
+      settled = at_rim(*frame, std::move(settled), beads);
     return {settled, static_cast<std::int64_t>(k), std::move(choice)};
   }
   if (!first && given.diameter_px <= 0 && not_round > 0)

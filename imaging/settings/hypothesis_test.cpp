@@ -77,6 +77,7 @@ ProfileTrial try_profile(const cv::Mat& grey, LocatorOptions options, const Hypo
   constexpr int kTrialSweeps = 3;
   options.refine.method = kProfileRefiner.word;
   options.refine.sweeps = kTrialSweeps;
+  options.rim_radii = false;
   options.preprocess.bright = h.bright;
   options.diameter_px = h.diameter_px;
   ProfileTrial trial;

@@ -60,6 +60,7 @@ TriedSettings try_one(const ExaminedRegion& region, const LocatorOptions& given,
   if (model_of(options.refine) == DiscModel::circle)
     settings.contrast = options.preprocess.contrast = find_contrast(region.picture, options);
   options.refine.sweeps = std::min(options.refine.sweeps, most_sweeps);
+  options.rim_radii = false;
   const Located located = locate(region.picture, options);
   const std::vector<Detection>& beads = located.beads;
   std::vector<double> radii = {0.5 * options.diameter_px};
