@@ -3,8 +3,9 @@
 /// Sub-pixel edges of side walls and plate in a frame.
 ///
 /// Every row is searched from the left and from the right border, and every column from the bottom, through
-/// the dark to the first bright pixel. At the step there, at position e, the light relative to the local
-/// light is
+/// the dark to the first bright pixel. A wall or plate that is a bar with light behind it is searched from
+/// its outer side, if that is straight and no bead. At the step there, at position e, the light relative to
+/// the local light is
 ///     l_i = Phi((i - e)/s) - D_i,
 /// with a blur s common to all rows of a frame (and another common to all columns), and D_i the share of
 /// light that the beads block, from their fitted discs. Beads and walls do not overlap, so what they block
@@ -34,7 +35,8 @@ struct CellEdges {
   double blur_px = 0;  ///< standard deviation of the plate's blur, including the pixel width; 0: no edge
 };
 
-/// Finds the edges. A side without a dark border of at least 3 px has no points. Pure.
+/// Finds the edges. A side has no points unless the picture is dark there up to its border, over at least
+/// 3 px, or a dark bar of at least 4 px crosses at least a third of the lines. Pure.
 /// \param bright beads, walls and plate are brighter than the background
 /// \param diameter_px bead diameter
 CellEdges find_cell_edges(const cv::Mat& grey, bool bright, double diameter_px);

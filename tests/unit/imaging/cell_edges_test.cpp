@@ -17,7 +17,9 @@ constexpr double kRadius_px = 7.5, kLeft_px = 20.37, kRight_px = 200.81, kPlate_
 constexpr int kFine = 8;  // grid points a pixel
 
 /// A cell with a column of beads along either wall and a row on the plate, each `gap_px` from it.
-cv::Mat cell_with_beads(double gap_px, double blur_px, double noise) {
+/// \param thickness_px of walls and plate, which transmit a tenth and a fifth of the light; light is behind
+/// them. Infinite: they are opaque
+cv::Mat cell_with_beads(double gap_px, double blur_px, double noise, double thickness_px = HUGE_VAL) {
   const cv::Size size(221, 181);
   cv::Mat1f fine(size * kFine, 1.0F);
   const auto at = [](int i) { return (i + 0.5) / kFine - 0.5; };
@@ -30,7 +32,11 @@ cv::Mat cell_with_beads(double gap_px, double blur_px, double noise) {
     beads.emplace_back(x, kPlate_px - kRadius_px - gap_px);
   for (int j = 0; j < fine.rows; ++j)
     for (int i = 0; i < fine.cols; ++i)
-      if (at(i) < kLeft_px || at(i) > kRight_px || at(j) > kPlate_px) fine(j, i) = 0;
+      if (at(i) < kLeft_px || at(i) > kRight_px || at(j) > kPlate_px) {
+        const double into = std::max({kLeft_px - at(i), at(i) - kRight_px}), below = at(j) - kPlate_px;
+        const bool plate = below > 0 && below<thickness_px, wall = into> 0 && into < thickness_px;
+        fine(j, i) = std::isinf(thickness_px) ? 0 : plate ? 0.2F : wall ? 0.1F : 1.0F;
+      }
   for (const cv::Point2d& b : beads)
     for (int j = static_cast<int>((b.y - kRadius_px - 1) * kFine); at(j) < b.y + kRadius_px; ++j)
       for (int i = static_cast<int>((b.x - kRadius_px - 1) * kFine); at(i) < b.x + kRadius_px; ++i)
@@ -76,4 +82,45 @@ TEST(CellEdges, BeadsThatTouchTheEdgesDoNotMoveThem) {
       EXPECT_NEAR(offset_of(edges.right, drawn(kRight_px), x), 0, kBound_px) << gap_px << ' ' << blur_px;
       EXPECT_NEAR(offset_of(edges.plate, drawn(kPlate_px), y), 0, kBound_px) << gap_px << ' ' << blur_px;
     }
+}
+
+// Walls and plate are bars with light behind them. The bound is wider than above, because the level of a bar
+// is known from few pixels.
+TEST(CellEdges, BarsWithLightBehindThemAreWalls) {
+  constexpr double kBound_px = 0.04;
+  const auto x = [](const EdgePoint& p) { return p.at.x_px; };
+  const auto y = [](const EdgePoint& p) { return p.at.y_px; };
+  for (const double thickness_px : {8.0, 14.0}) {
+    const CellEdges edges =
+        find_cell_edges(cell_with_beads(0.5, 1.0, 1, thickness_px), false, 2 * kRadius_px);
+    ASSERT_GE(edges.left.size(), 40U) << thickness_px;
+    ASSERT_GE(edges.right.size(), 40U) << thickness_px;
+    ASSERT_GE(edges.plate.size(), 40U) << thickness_px;
+    EXPECT_NEAR(offset_of(edges.left, kLeft_px, x), 0, kBound_px + 0.5 / kFine) << thickness_px;
+    EXPECT_NEAR(offset_of(edges.right, kRight_px, x), 0, kBound_px + 0.5 / kFine) << thickness_px;
+    EXPECT_NEAR(offset_of(edges.plate, kPlate_px, y), 0, kBound_px + 0.5 / kFine) << thickness_px;
+  }
+}
+
+// A row of touching beads on a plate that is not seen, and a column of them, have straight tangents but no
+// straight sides.
+TEST(CellEdges, RowsOfBeadsAreNoBars) {
+  for (const double diameter_px : {9.0, 15.0, 24.0}) {
+    cv::Mat1f fine(cv::Size(200, 200) * kFine, 1.0F);
+    for (int row = 0; row < 3; ++row)
+      for (double at = 15; at < 190; at += diameter_px)
+        for (const cv::Point2d& b :
+             {cv::Point2d(at, 180 - row * diameter_px), cv::Point2d(20 + row * diameter_px, at)})
+          cv::circle(fine, (b + cv::Point2d(0.5, 0.5)) * kFine, cvRound(diameter_px * kFine / 2), 0,
+                     cv::FILLED);
+    cv::GaussianBlur(fine, fine, {}, 0.8 * kFine);
+    cv::Mat1f light;
+    cv::resize(fine, light, cv::Size(200, 200), 0, 0, cv::INTER_AREA);
+    cv::Mat1b grey;
+    light.convertTo(grey, CV_8U, 200, 10);
+    const CellEdges edges = find_cell_edges(grey, false, diameter_px);
+    EXPECT_TRUE(edges.left.empty()) << diameter_px;
+    EXPECT_TRUE(edges.right.empty()) << diameter_px;
+    EXPECT_TRUE(edges.plate.empty()) << diameter_px;
+  }
 }
