@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "imaging/stack/formats/byte_file.hpp"
+#include "imaging/stack/formats/frame_numbers.hpp"
 #include "imaging/stack/formats/reader.hpp"
 #include "imaging/stack/formats/size_guard.hpp"
 
@@ -40,6 +41,9 @@ class Folder final : public FrameSource {
     info_ = source_->info();
     info_.format = fmt::format("{} files, the first: {}", files_.size(), info_.format);
     info_.other_files = other_files;
+    std::vector<std::string> names;
+    for (const fs::path& file : files_) names.push_back(file.filename().string());
+    for (std::string& sentence : notes_on_names(names)) info_.notes.push_back(std::move(sentence));
     info_.frame_rate_hz.reset();
     announced_ = files_.size();
     // A stack of many pages that is split into files: count the pages of every file.

@@ -1,0 +1,20 @@
+#pragma once
+/// \file
+/// What the numbers in the names of a folder's pictures tell: frames that are missing, and pictures of
+/// several series.
+
+#include <string>
+#include <vector>
+
+namespace twincell::imaging::frames {
+
+/// Sentences for the user. The number of a picture is the last run of digits in its name without the
+/// extension; what precedes it names the series.
+///
+/// - Several series of at least two pictures each: two cameras, or two recordings, in one folder.
+/// - Numbers that are skipped, if at least nine tenths of the steps between neighbours are equal, and all are
+///   multiples of that step. Numbers that are times do not step evenly and give no sentence.
+/// \param names in natural order
+std::vector<std::string> notes_on_names(const std::vector<std::string>& names);
+
+}  // namespace twincell::imaging::frames

@@ -1,0 +1,52 @@
+#include "imaging/stack/formats/frame_numbers.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace twincell::imaging::frames {
+namespace {
+
+std::vector<std::string> numbered(const char* form, int from, int to, int step = 1) {
+  std::vector<std::string> names;
+  for (int i = from; i <= to; i += step) names.push_back(fmt::format(fmt::runtime(form), i));
+  return names;
+}
+
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+TEST(FrameNumbers, WholeSeriesGiveNoSentence) {
+  EXPECT_TRUE(notes_on_names({}).empty());
+  EXPECT_TRUE(notes_on_names({"only.png"}).empty());
+  EXPECT_TRUE(notes_on_names(numbered("{}.png", 1, 30)).empty());
+  EXPECT_TRUE(notes_on_names(numbered("img_{:05}.tif", 0, 400, 20)).empty());
+  EXPECT_TRUE(notes_on_names(joined({"dark.png"}, numbered("f{}.png", 1, 9))).empty());
+}
+
+TEST(FrameNumbers, SkippedOnesAreNamed) {
+  const auto names = joined(joined(numbered("f_{:03}.png", 0, 30), numbered("f_{:03}.png", 32, 40)),
+                            numbered("f_{:03}.png", 44, 60));
+  const auto notes = notes_on_names(names);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("skip 4 frames: 31, 41 to 43;"), std::string::npos) << notes[0];
+}
+
+// Numbers that are times: 90 % of the steps are not equal, or the others are no multiples.
+TEST(FrameNumbers, UnevenStepsAreNoGaps) {
+  EXPECT_TRUE(notes_on_names({"t100.png", "t133.png", "t167.png", "t200.png", "t233.png"}).empty());
+  auto names = numbered("t{}.png", 100, 400, 10);
+  names.push_back("t415.png");
+  EXPECT_TRUE(notes_on_names(names).empty());
+  EXPECT_TRUE(notes_on_names({"1234567890123456789012.png", "1234567890123456789019.png"}).empty());
+}
+
+TEST(FrameNumbers, TwoCamerasInAFolderAreNoticed) {
+  const auto notes = notes_on_names(joined(numbered("camA_{}.png", 1, 5), numbered("camB_{}.png", 1, 6)));
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("2 series, 'camA_' (5 frames), 'camB_' (6 frames)"), std::string::npos) << notes[0];
+}
+
+}  // namespace
+}  // namespace twincell::imaging::frames
