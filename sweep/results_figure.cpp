@@ -16,6 +16,7 @@
 #include "analysis/report/gnuplot_text.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
+#include "sim/scene/scene_keys.hpp"
 
 namespace twincell::sweep {
 namespace {
@@ -57,6 +58,28 @@ Value value_of(const json& point, const std::string& result) {
     v.high = number(interval, "high");
   }
   return v;
+}
+
+/// Unit of a key of the scene; empty for a pure number and for a key that is none of a scene.
+std::string unit_of_key(const std::string& key) {
+  const auto& rows = sim::scene_keys().rows;
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const KeyRow& r) { return r.key == key; });
+  return row == rows.end() || row->unit == "1" ? "" : row->unit;
+}
+
+/// Unit of a result, from the first point that states it; empty for a pure number.
+std::string unit_of_result(const json& document, const std::string& result) {
+  for (const json& point : document.at("points")) {
+    const json r = point.value("results", json::object()).value(result, json::object());
+    const std::string unit = r.value("unit", "");
+    if (!unit.empty()) return unit == "1" ? "" : unit;
+  }
+  return {};
+}
+
+/// The label of an axis. `unit` is enhanced text.
+std::string with_unit(const std::string& label, const std::string& unit) {
+  return unit.empty() ? label : fmt::format("{} ({})", label, unit);
 }
 
 /// The result at every set of axes: pooled where several seeds ran.
@@ -118,11 +141,14 @@ std::string horizontal(const std::vector<Value>& values, const FigureOptions& op
   return options.over.front();
 }
 
-/// The axes other than x that distinguish a value, as "key = value, ...", the named one first.
+/// The axes other than x that distinguish a value, as "key = value unit, ...", the named one first.
 std::string curve_of(const Value& v, const std::string& x, const std::vector<std::string>& order) {
   std::vector<std::string> parts;
   for (const std::string& key : order)
-    if (key != x && v.axes.contains(key)) parts.push_back(key + " = " + json_text(v.axes[key]));
+    if (key != x && v.axes.contains(key)) {
+      const std::string unit = unit_of_key(key);
+      parts.push_back(key + " = " + json_text(v.axes[key]) + (unit.empty() ? "" : " ") + unit);
+    }
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
@@ -179,8 +205,13 @@ analysis::Figure results_figure(const std::string& collected, const FigureOption
   const std::string y = onsets ? fmt::format("{} at the onset of {}", document["onsets"][0].value("key", ""),
                                              document["onsets"][0].value("verdict", ""))
                                : result;
-  analysis::figure_style::Axis x_axis{.label = analysis::gnuplot_text(x)},
-      y_axis{.label = onsets ? analysis::gnuplot_text(y) : analysis::gnuplot_symbol(y)};
+  const auto key_label = [](const std::string& label, const std::string& key) {
+    return with_unit(analysis::gnuplot_text(label), analysis::gnuplot_text(unit_of_key(key)));
+  };
+  analysis::figure_style::Axis x_axis{.label = key_label(x, x)},
+      y_axis{.label = onsets ? key_label(y, document["onsets"][0].value("key", ""))
+                             : with_unit(analysis::gnuplot_symbol(y),
+                                         analysis::gnuplot_formula(unit_of_result(document, result)))};
   // Curves in the order of their first value of the second axis, not of its text.
   std::vector<std::string> curves;
   std::map<std::string, Rows> rows;

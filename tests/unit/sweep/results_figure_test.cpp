@@ -48,6 +48,20 @@ TEST(ResultsFigure, KeepsTheRulesOfFigures) {
   EXPECT_NE(f.plot.find("set ylabel 's_{b}'"), std::string::npos) << f.plot;
 }
 
+TEST(ResultsFigure, AxesHaveTheirUnits) {
+  const char* points = R"({"points": [
+    {"axes": {"cell.width": 10, "contact.mu": 0.1}, "results": {"T_z": {"value": 2, "unit": "m g sigma"}, "q6": {"value": 0.7, "unit": "1"}}},
+    {"axes": {"cell.width": 20, "contact.mu": 0.1}, "results": {"T_z": {"value": 3, "unit": "m g sigma"}, "q6": {"value": 0.6, "unit": "1"}}}]})";
+  const analysis::Figure f = results_figure(points, {.result = "T_z"});
+  EXPECT_NE(f.plot.find("set xlabel 'cell.width (σ)'"), std::string::npos) << f.plot;
+  EXPECT_NE(f.plot.find("set ylabel 'T_{z} (m g σ)'"), std::string::npos) << f.plot;
+  const analysis::Figure curves =
+      results_figure(points, {.result = "q6", .over = {"contact.mu", "cell.width"}});
+  EXPECT_NE(curves.plot.find("set xlabel 'contact.mu'"), std::string::npos) << curves.plot;
+  EXPECT_NE(curves.plot.find("set ylabel 'q6'"), std::string::npos) << curves.plot;
+  EXPECT_NE(curves.plot.find("title 'cell.width = 10 σ' noenhanced"), std::string::npos) << curves.plot;
+}
+
 TEST(ResultsFigure, WrongNamesAreRefusedWithTheRightOnes) {
   expect_refusal<ConfigError>([] { (void)results_figure(kGrid, {.result = "s_d"}); }, "s_d", "s_b");
   expect_refusal<ConfigError>([] { (void)results_figure(kGrid, {.result = "s_b", .over = {"gamma"}}); },
