@@ -124,6 +124,7 @@ void add_analyze(CLI::App& program, Common& common) {
       "Compute the observables of a trajectory: phase, s_b, s_c, order, defects, slip, convection, profiles "
       "and granular temperature, with confidence intervals. Prints them; -o also writes them to a file.",
       "twincell analyze sim.h5 --discard 2 -o results.h5");
+  has_details(verb, "all results, lists and absent ones included, and how each is computed");
   auto options = std::make_shared<AnalyzeOptions>();
   verb.add_option("trajectory", options->trajectories,
                   "Trajectory (H5MD); several that differ only by chance (seeds, repeats) are pooled, with "

@@ -74,7 +74,9 @@ void report_comparison(const Common& common, const twin::ComparingOptions& optio
   result["report"] = report;
   result["provenance"] = nlohmann::json::parse(origin);
   print_result(common, result,
-               analysis::comparison_summary(noted.comparison) + result_text + "report: " + report + "\n");
+               (common.verbose ? analysis::comparison_text(noted.comparison)
+                               : analysis::comparison_summary(noted.comparison)) +
+                   result_text + "report: " + report + "\n");
 }
 
 }  // namespace twincell::cli

@@ -324,6 +324,7 @@ void add_locate(CLI::App& program, Common& common) {
                             "Locate the beads in every frame of a stack. Writes a table of positions, radii "
                             "and uncertainties (CSV, trackpy's columns).",
                             "twincell locate frames/ -o beads.csv --overlay first.png");
+  has_details(verb, "beads, edge blur and time of every frame");
   verb.add_option("stack", o->stack,
                   "Stack: folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
       ->required();

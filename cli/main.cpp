@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/advice.hpp"
 #include "cli/numbers.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
@@ -78,8 +79,12 @@ std::string unknown_verb(const CLI::App& program, int argc, char** argv) {
                                    [&](const CLI::App* known) { return known->get_name() == argv[i]; });
     if (verb == verbs.end()) {
       const std::string near = nearest_command(*group, argv[i]);
-      return "there is no verb '" + path + argv[i] + "'" +
-             (near.empty() ? "; " + path + "--help lists them." : "; did you mean '" + path + near + "'?");
+      const std::string complaint = "there is no verb '" + path + argv[i] + "'; ";
+      if (!near.empty()) return complaint + "did you mean '" + path + near + "'?";
+      if (group == &program) return complaint + "--help lists them.";
+      std::vector<std::string> names;
+      for (const CLI::App* known : verbs) names.push_back(known->get_name());
+      return complaint + path + "has " + listed(names) + ".";
     }
     group = *verb;
     path += group->get_name() + " ";
@@ -142,13 +147,26 @@ int complain_of_fault(int argc, char** argv, const std::string& kind, const char
                   ExitCode::failed);
 }
 
-/// The complaint with the dashes of the option that it begins with: the libraries name an option by its key.
-std::string with_dashes(const CLI::App& program, const std::string& complaint) {
+/// The verb that was selected last.
+const CLI::App& selected(const CLI::App& program) {
   const CLI::App* verb = &program;
   while (!verb->get_subcommands().empty()) verb = verb->get_subcommands().front();
+  return *verb;
+}
+
+/// The complaint with the next step that the command line suggests.
+std::string with_advice(const std::string& complaint, int argc, char** argv) {
+  const std::string advice = advice_on_file({argv + 1, argv + argc}, complaint);
+  if (advice.empty()) return complaint;
+  return complaint.substr(0, complaint.find_last_not_of('.') + 1) + "; " + advice +
+         (advice.ends_with('?') ? "" : ".");
+}
+
+/// The complaint with the dashes of the option that it begins with: the libraries name an option by its key.
+std::string with_dashes(const CLI::App& program, const std::string& complaint) {
   const std::string key = complaint.substr(0, complaint.find(": "));
-  const bool is_option =
-      !key.empty() && key.size() < complaint.size() && verb->get_option_no_throw("--" + key) != nullptr;
+  const bool is_option = !key.empty() && key.size() < complaint.size() &&
+                         selected(program).get_option_no_throw("--" + key) != nullptr;
   return is_option ? "--" + complaint : complaint;
 }
 
@@ -194,14 +212,12 @@ int run(int argc, char** argv) {
     program.exit(wanted);
     return finish_output();
   } catch (const Error& e) {
-    return complain(with_dashes(program, e.what()), e.exit_code());
+    return complain(with_advice(with_dashes(program, e.what()), argc, argv), e.exit_code());
   } catch (const CLI::ParseError& e) {
     // An option that is misspelled is the cause, also where CLI11 misses the right one first.
     if (const std::string complaint = unknown_option(program, argc, argv); !complaint.empty())
       return complain(complaint, ExitCode::usage);
-    return complain(std::string(e.what()) + (std::string(e.what()).ends_with('.') ? "" : ".") +
-                        " (--help shows the options.)",
-                    ExitCode::usage);
+    return complain(advised(selected(program), e.what()), ExitCode::usage);
   }
 }
 

@@ -83,12 +83,14 @@ void ask_for_the_rest(twin::CellAnswers& a, const twin::CellSurvey& s, bool seve
     a.gamma = ask("Peak acceleration of the plate over g (Gamma)", "unknown");
 }
 
-std::string table_of(const twin::CellDraft& draft) {
+/// \param details also how each value was found, or can be found
+std::string table_of(const twin::CellDraft& draft, bool details) {
   std::string text;
   for (const twin::DraftKey& k : draft.keys) {
     const std::size_t colon = k.comment.find(':');
     const std::string error = k.measured.empty() ? "" : k.comment.substr(0, colon);
-    text += fmt::format("  {:<26} {:<24} {}\n", k.key, k.open ? "still needed" : k.value, error);
+    text += fmt::format("  {:<26} {:<24} {}\n", k.key, k.open ? "still needed" : k.value,
+                        details ? k.comment : error);
   }
   if (draft.gamma && draft.gamma->error > 0)
     text += fmt::format("  {:<26} {:<24} +- {}\n", "Gamma = A omega^2/g", twin::value_text(*draft.gamma),
@@ -130,10 +132,10 @@ nlohmann::json write_one(const Common& common, NewOptions& o, const fs::path& st
     ask_for_the_rest(o.answers, survey, o.stacks.size() > 1);
   const twin::CellDraft draft = twin::draft_cell(survey, o.answers);
   for (const auto* sentences : {&survey.notes, &draft.notes})
-    for (const std::string& sentence : *sentences) note(common, sentence);
+    for (const std::string& sentence : *sentences) note(common, stack.string() + ": " + sentence);
   write_text_file(cell, twin::cell_text(draft, survey, kHead + one_line(common.command_line)), cell_file());
   imaging::write_png(picture, twin::draw_cell(survey, draft));
-  said += stack.string() + "\n" + table_of(draft);
+  said += stack.string() + "\n" + table_of(draft, common.verbose);
   for (const twin::NotMeasured& m : survey.missing)
     said += fmt::format("  not measured: {}, because {}; {}\n", m.what, m.why, m.remedy);
   said += fmt::format("{}\npicture: {}\n", cell.string(), picture.string());
@@ -141,6 +143,29 @@ nlohmann::json write_one(const Common& common, NewOptions& o, const fs::path& st
   document["cell"] = cell.string();
   document["picture"] = picture.string();
   return document;
+}
+
+/// Notes stacks of different scales: usually the camera and the beads are the same for all.
+void note_different_scales(const Common& common, const nlohmann::json& cells) {
+  constexpr double kSame = 0.01;
+  const auto scale = [](const nlohmann::json& cell) {
+    const nlohmann::json& measured = cell["measured"];
+    const char* key = "camera.pixels_per_sigma";
+    return measured.contains(key) ? measured[key][0]["value"].get<double>() : 0.0;
+  };
+  const nlohmann::json *least = nullptr, *most = nullptr;
+  for (const nlohmann::json& cell : cells) {
+    if (scale(cell) <= 0) continue;
+    if (least == nullptr || scale(cell) < scale(*least)) least = &cell;
+    if (most == nullptr || scale(cell) > scale(*most)) most = &cell;
+  }
+  if (least == nullptr || scale(*most) <= (1 + kSame) * scale(*least)) return;
+  note(common,
+       fmt::format(
+           "the scales differ: {:.2f} px per bead in {}, {:.2f} in {}; if camera and beads are the same, "
+           "look at the circles in the pictures and state the bead diameter with --diameter.",
+           scale(*least), (*least)["stack"].get<std::string>(), scale(*most),
+           (*most)["stack"].get<std::string>()));
 }
 
 void run(const Common& common, NewOptions& o) {
@@ -173,6 +198,7 @@ void run(const Common& common, NewOptions& o) {
     cells.push_back(write_one(common, o, o.stacks[i], cell, i == 0, said));
     open += cells.back()["open"].size();
   }
+  note_different_scales(common, cells);
   if (open > 0)
     said += fmt::format("{} value{} still needed: look for \"FILL IN\" in the file{}.\n", open,
                         open == 1 ? " is" : "s are", several ? "s" : "");
@@ -194,6 +220,7 @@ void add_new(CLI::App& program, Common& common) {
                "Measure what a stack shows of its cell (beads, walls, plate, scale, origin, drive, "
                "phases), ask for the rest, and write CELL.toml with a picture of what was measured.",
                "twincell new frames/ -o CELL.toml --sigma-mm 2 --drive-hz 11.15");
+  has_details(verb, "how each value was found, or can be found");
   auto o = std::make_shared<NewOptions>();
   verb.add_option(
       "stacks", o->stacks,

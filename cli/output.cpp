@@ -141,7 +141,7 @@ CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, c
   verb.footer("Example:\n  " + example);
   verb.add_flag("--json", common.json, "Print the result as one JSON document instead of text");
   verb.add_flag("-q,--quiet", common.quiet, "Print nothing but errors (with --json: and the document)");
-  verb.add_flag("-v,--verbose", common.verbose, "Print every detail of the result");
+  verb.add_flag("-v,--verbose", common.verbose, "Print every detail; this verb always does");
   verb.add_option("--threads", common.threads,
                   "Number of threads; 0 (default): automatic, at most one per core")
       ->check(CLI::Range(0, 4096))
@@ -154,6 +154,10 @@ CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, c
       "Replace an existing output file even if it is of another kind; inputs and folders are never replaced");
   verb.parse_complete_callback([&verb, &common] { guard_outputs(verb, common); });
   return verb;
+}
+
+void has_details(CLI::App& verb, const std::string& what) {
+  verb.get_option("--verbose")->description("Print every detail: " + what);
 }
 
 void former_option(CLI::App& verb, const std::string& former, const std::string& present) {

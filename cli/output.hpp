@@ -54,6 +54,10 @@ std::vector<std::string> with_seed(std::vector<std::string> assignments, const C
 CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, const std::string& summary,
                    const std::string& example);
 
+/// States what --verbose adds to the result of a verb, as a clause; a verb without this call prints all
+/// details in any case.
+void has_details(CLI::App& verb, const std::string& what);
+
 /// Declares a former spelling of an option, without a line in the help. \param former as for CLI11:
 /// "--omega",
 /// "-o,--output" \param present what to write instead; a command that uses the former spelling ends with a

@@ -33,16 +33,19 @@ std::string row(const analysis::Result& r) {
 }  // namespace
 
 std::string results_summary(const std::vector<analysis::Result>& results, bool requested) {
-  std::string text, rows;
+  constexpr const char* kVerdict = "phase";  // printed first
+  std::string text, other_words, rows;
   std::size_t lists = 0, absent = 0;
   for (const analysis::Result& r : results) {
     if (r.present() && !r.text.empty())
-      text += fmt::format("{}: {} ({})\n", r.name, r.text, r.convention);
+      (r.name == kVerdict ? text : other_words) +=
+          fmt::format("{}: {} ({})\n", r.name, r.text, r.convention);
     else if (requested || (r.present() && r.shape.empty()))
       rows += row(r);
     else
       ++(r.present() ? lists : absent);
   }
+  text += other_words;
   if (!rows.empty())
     text +=
         fmt::format("{:<25} {:<13} {:<26} {:<15} from\n", "result", "value", "95 % interval", "unit") + rows;

@@ -101,11 +101,24 @@ bool ConfigSection::has(const std::string& key) const {
 }
 
 namespace {
+/// "; write 1.5" for the text "1,5", which a decimal comma makes of a number; otherwise empty.
+std::string without_decimal_comma(const toml::node& node) {
+  std::string text = node.value_exact<std::string>().value_or("");
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos || text.find_first_not_of("0123456789,+-eE") != std::string::npos ||
+      text.find(',', comma + 1) != std::string::npos)
+    return {};
+  text[comma] = '.';
+  return fmt::format("; a decimal number is written with a point: {}", text);
+}
+
 template <class T>
 std::optional<T> value_of(const toml::node* node, const Where& where, const char* wanted) {
   if (node == nullptr) return std::nullopt;
   std::optional<T> value = node->value_exact<T>();
-  if (!value) throw ConfigError(where, fmt::format("{} is needed, not {}.", wanted, kind_of(*node)));
+  if (!value)
+    throw ConfigError(
+        where, fmt::format("{} is needed, not {}{}.", wanted, kind_of(*node), without_decimal_comma(*node)));
   return value;
 }
 }  // namespace
@@ -428,11 +441,22 @@ void walk(const toml::table& table, const std::string& path, const std::set<std:
   }
 }
 
+/// The known key that is nearest to a wrong one; if none is near, the first of the same name in another
+/// table.
+std::string nearest_key(const std::string& key, const std::vector<std::string>& known) {
+  const auto name = [](const std::string& k) { return k.substr(k.rfind('.') + 1); };
+  const std::string near = nearest_word(key, known);
+  if (!near.empty()) return near;
+  const auto same = std::find_if(known.begin(), known.end(),
+                                 [&](const std::string& k) { return k != key && name(k) == name(key); });
+  return same == known.end() ? "" : *same;
+}
+
 }  // namespace
 
 void Config::refuse_unknown_keys() const {
   walk(shared_->table, "", shared_->asked, [&](const std::string& key, const toml::node& node) {
-    const std::string nearest = nearest_word(key, {shared_->asked.begin(), shared_->asked.end()});
+    const std::string nearest = nearest_key(key, {shared_->asked.begin(), shared_->asked.end()});
     throw ConfigError(shared_->where_of(node, key),
                       nearest.empty() ? "there is no such key."
                                       : fmt::format("there is no such key; did you mean '{}'?", nearest));

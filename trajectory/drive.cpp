@@ -211,10 +211,12 @@ Drive solve_drive(const DriveSpec& spec, double gravity, const Where& where, Axi
       return drive;
     }
   }
-  throw ConfigError(
-      where, terms.size() < 2
-                 ? "two of amplitude, omega, frequency, gamma, k_m, peak_velocity are needed."
-                 : "the numbers given fix only one of amplitude and omega; give an independent second one.");
+  if (terms.size() < 2)
+    throw ConfigError(
+        where, fmt::format("two of amplitude, omega, frequency, gamma, k_m, peak_velocity are needed, {}.",
+                           terms.empty() ? "none is given" : fmt::format("only {} is given", terms[0].name)));
+  throw ConfigError(where,
+                    "the numbers given fix only one of amplitude and omega; give an independent second one.");
 }
 
 }  // namespace twincell

@@ -51,6 +51,19 @@ class Draft {
     out_.keys.push_back({key, fmt::format("\"{}{}\"", kPlaceholder, what), comment, {}, true});
   }
 
+  /// Where discs that are not plain end depends on the light.
+  void scale_of_shaded_discs(const calibration::Estimate& seen) {
+    constexpr double kClear = 2e-3;  // relative error; in a gas few beads touch
+    if (s_.diameter_stated) {
+      scale_ = calibration::Estimate{s_.diameter_px, 0};
+      how_scale_ = fmt::format("stated with --diameter; the discs are {} px wide", value_text(seen));
+    } else if (s_.beads->spacing && relative(*s_.beads->spacing) < kClear) {
+      scale_ = s_.beads->spacing;
+      how_scale_ = fmt::format("distance of touching beads in {} frames; the discs are {} px wide",
+                               s_.beads->frames, value_text(seen));
+    }
+  }
+
   /// Scale and the diameter of a bead in mm.
   void scale() {
     sigma_mm_ = a_.sigma_mm ? std::optional(calibration::Estimate{*a_.sigma_mm, 0}) : std::nullopt;
@@ -74,6 +87,8 @@ class Draft {
     } else if (diameter) {
       scale_ = diameter;
       how_scale_ = fmt::format("mean diameter of {} discs in {} frames", s_.beads->sizes, s_.beads->frames);
+      if (!s_.plain_discs && s_.other_diameters_px.empty()) scale_of_shaded_discs(*diameter);
+      diameter = scale_;
       if (width && a_.width_mm) {
         sigma_mm_ = with_errors(*a_.width_mm * diameter->value / width->value,
                                 {relative(*diameter), relative(*width)});
@@ -84,7 +99,9 @@ class Draft {
   }
 
   void camera() {
-    if (scale_)
+    if (scale_ && scale_->error == 0)
+      stated("camera.pixels_per_sigma", value_text(*scale_), how_scale_);
+    else if (scale_)
       measured("camera.pixels_per_sigma", *scale_, how_scale_);
     else
       open("camera.pixels_per_sigma", "bead diameter in px", "");

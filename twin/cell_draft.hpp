@@ -44,8 +44,9 @@ struct CellDraft {
 /// Drafts the cell.
 ///
 /// - sigma: the bead diameter. With `sigma_mm` and `width_mm` and both walls, the scale is
-///   W_px sigma_mm / width_mm; otherwise it is the mean diameter of the beads in px. With `width_mm` alone,
-///   sigma_mm = width_mm d_px / W_px.
+///   W_px sigma_mm / width_mm; otherwise it is d_px, the mean diameter of the beads in px. Of beads that are
+///   no plain discs, it is the distance of touching ones, if that is known to 0.2 %: where such a disc ends
+///   depends on the light. With `width_mm` alone, sigma_mm = width_mm d_px / W_px.
 /// - drive: A is the amplitude of the plate. omega follows from `frequency_hz`, otherwise from the frame rate
 ///   over the period; without either, from `gamma`, which alone needs no laboratory scale.
 ///   Gamma = A omega^2 / g.

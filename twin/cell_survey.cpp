@@ -79,6 +79,8 @@ void survey_beads(CellSurvey& s, const SurveyOptions& options, const ProgressOf&
   }
   s.bright = found.preprocess.bright;
   s.diameter_px = found.diameter_px;
+  s.diameter_stated = options.diameter_px > 0;
+  s.plain_discs = imaging::model_of(found.refine) == imaging::DiscModel::plain;
   s.other_diameters_px = found.other_diameters_px;
   try {
     ReadableFrames frames(s.stack);
@@ -108,8 +110,10 @@ void survey_plate(CellSurvey& s) {
   const auto unseen = [&](const std::string& why) {
     s.missing.push_back(
         {"the plate", why,
-         "state camera.origin_px and the drive by hand, or film with the plate's upper edge and a "
-         "dark plate below it in the picture"});
+         fmt::format(
+             "state camera.origin_px and the drive by hand, or film with the plate's upper edge and a "
+             "plate below it that is as {} as the beads in the picture",
+             s.bright ? "bright" : "dark")});
     s.geometry->has_plate = false;
   };
   if (!s.geometry->has_plate || seen == 0)
@@ -168,7 +172,10 @@ void survey_edges(CellSurvey& s, const SurveyOptions& options, const ProgressOf&
         {s.geometry->has_left    ? "the right wall"
          : s.geometry->has_right ? "the left wall"
                                  : "the side walls",
-         "a wall needs a dark border of 3 px at the side of the picture with light next to it",
+         fmt::format(
+             "a wall needs a border of 3 px at the side of the picture, or a straight bar, as {} as the "
+             "beads",
+             s.bright ? "bright" : "dark"),
          "state cell.width and camera.origin_px by hand, or cell.sides = \"periodic\""});
 }
 

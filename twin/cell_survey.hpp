@@ -36,10 +36,12 @@ struct CellSurvey {
   std::filesystem::path stack;
   imaging::StackInfo info;
   cv::Size size;
-  std::size_t n_frames = 0;  ///< readable frames
-  std::string unreadable;    ///< message of the frame at which reading ended; empty: all were read
-  bool bright = false;       ///< beads are brighter than the background
-  double diameter_px = 0;    ///< bead diameter of the locator; 0: no beads were found
+  std::size_t n_frames = 0;      ///< readable frames
+  std::string unreadable;        ///< message of the frame at which reading ended; empty: all were read
+  bool bright = false;           ///< beads are brighter than the background
+  double diameter_px = 0;        ///< bead diameter of the locator; 0: no beads were found
+  bool diameter_stated = false;  ///< by SurveyOptions
+  bool plain_discs = true;       ///< of uniform darkness; else where a disc ends depends on the light
   std::vector<double> other_diameters_px;  ///< of discs of further sizes
   std::optional<calibration::SizeStatistics> beads;
   std::optional<calibration::CellGeometry> geometry;

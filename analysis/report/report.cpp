@@ -60,7 +60,7 @@ std::string phases_of(const std::vector<Run>& runs, const std::vector<std::size_
   return fmt::format("{}", fmt::join(names, " / "));
 }
 
-/// How many numbers differ really, and the first of them by name.
+/// How many numbers really differ, and the first of them by name.
 std::string real_differences(const Comparison& c) {
   constexpr std::size_t kMostNamed = 5;
   const bool heights = several_heights(c.matches);
@@ -70,10 +70,10 @@ std::string real_differences(const Comparison& c) {
       names.push_back(fmt::format("{} at {}", d.quantity, condition_text(c.matches[d.match], heights)));
   if (c.differences.empty()) return {};
   if (names.empty())
-    return fmt::format("None of the {} compared numbers differs really.", c.differences.size());
+    return fmt::format("None of the {} compared numbers really differs.", c.differences.size());
   const std::size_t n = names.size();
   if (n > kMostNamed) names.resize(kMostNamed);
-  return fmt::format("{} of the {} compared numbers differ{} really: {}{}.", n, c.differences.size(),
+  return fmt::format("{} of the {} compared numbers really differ{}: {}{}.", n, c.differences.size(),
                      n == 1 ? "s" : "", fmt::join(names, heights ? "; " : ", "),
                      n > kMostNamed ? fmt::format(" and {} more", n - kMostNamed) : "");
 }

@@ -158,16 +158,21 @@ bool Difference::is_real() const {
   return t && std::abs(*t) > kSignificant && !(defects && std::abs(remainder()) <= *defects);
 }
 
+std::optional<double> Difference::camera_share() const {
+  if (!camera || std::abs(*camera) <= 0.5 * std::abs(difference()) || *camera * difference() <= 0)
+    return std::nullopt;
+  return *camera / difference();
+}
+
 std::string Difference::attribution() const {
   const double size = std::abs(difference());
   if (size == 0 && remainder() == 0) return "none: the same on both sides";
   const auto t = in_errors();
   if (!t) return "no error is known, so that no conclusion is possible";
   std::string by_camera;
-  if (camera && std::abs(*camera) > 0.5 * size && *camera * difference() > 0)
-    by_camera = *camera / difference() < 1
-                    ? fmt::format("camera and tracking cause {:.0f} % of it", 100 * *camera / difference())
-                    : "camera and tracking cause all of it";
+  if (const auto share = camera_share())
+    by_camera = *share < 1 ? fmt::format("camera and tracking cause {:.0f} % of it", 100 * *share)
+                           : "camera and tracking cause all of it";
   if (std::abs(*t) <= kSignificant) {
     if (!by_camera.empty() && size > kSignificant * *error())
       return by_camera + "; the rest is within its error";
@@ -292,19 +297,27 @@ std::string real_differences_text(const std::vector<Difference>& differences,
   const Conditions conditions(matches);
   std::string rows;
   std::size_t others = 0;
+  bool filmed = true, other_starts = true;
   for (const Difference& d : differences) {
     if (!d.is_real()) {
       ++others;
       continue;
     }
-    rows +=
-        fmt::format("{}  {:<24}{:>12.4g}{:>12.4g}{:>12.3g}\n           {}\n", conditions.of(matches[d.match]),
-                    d.quantity, d.experiment.value, d.simulation.value, d.difference(), d.attribution());
+    const auto share = d.camera_share();
+    rows += fmt::format("{}  {:<24}{:>12.4g}{:>12.4g}{:>12.3g}{:>10.1f}{}\n", conditions.of(matches[d.match]),
+                        d.quantity, d.experiment.value, d.simulation.value, d.difference(),
+                        std::abs(d.in_errors().value_or(0)),
+                        share ? fmt::format("  camera {:.0f} %", 100 * std::min(1.0, *share)) : "");
+    filmed = filmed && d.camera.has_value();
+    other_starts = other_starts && d.defects.has_value();
   }
-  if (!rows.empty())
-    rows = fmt::format("{}  {:<24}{:>12}{:>12}{:>12}\n", conditions.head(), "real difference", "experiment",
-                       "simulation", "difference") +
+  if (!rows.empty()) {
+    rows = fmt::format("{}  {:<24}{:>12}{:>12}{:>12}{:>10}\n", conditions.head(), "real difference",
+                       "experiment", "simulation", "difference", "errors") +
            rows;
+    if (!filmed) rows += "nothing was filmed, so that camera and tracking may cause a difference\n";
+    if (!other_starts) rows += "one start alone does not show whether defects cause a difference\n";
+  }
   return rows +
          fmt::format("{} other numbers agree within their errors (differences.csv in the report).\n", others);
 }

@@ -52,6 +52,8 @@ struct Difference {
   [[nodiscard]] std::optional<double> in_errors() const;
   /// Whether the remainder exceeds two errors and the difference between starts with other defects.
   [[nodiscard]] bool is_real() const;
+  /// The share of the difference that camera and tracking cause, if it is above one half.
+  [[nodiscard]] std::optional<double> camera_share() const;
   /// The cause to which the difference is attributed, in one sentence.
   [[nodiscard]] std::string attribution() const;
 };
@@ -85,8 +87,8 @@ std::vector<Difference> find_differences(const std::vector<Run>& runs, const std
 /// The differences as a table for a terminal.
 std::string differences_text(const std::vector<Difference>& differences, const std::vector<Match>& matches);
 
-/// As differences_text, only the real ones, each in two lines of at most 100 columns; then the number of the
-/// others. Empty if there are no differences.
+/// As differences_text, only the real ones, each in a line of at most 100 columns with its size in errors;
+/// then what remains open for all of them, and the number of the others. Empty if there are no differences.
 std::string real_differences_text(const std::vector<Difference>& differences,
                                   const std::vector<Match>& matches);
 

@@ -72,6 +72,21 @@ TEST(Differences, TheHeightIsNamedIfThereAreSeveral) {
   EXPECT_NE(text().find("  2.000    40  s_b "), std::string::npos) << text();
 }
 
+// 0.3 apart, of which camera and tracking cause 0.2; the remaining 0.1 is four errors of 0.025.
+TEST(Differences, RealOnesAreRowsAndWhatRemainsOpenIsSaidOnce) {
+  const Runs runs = {run(Side::experiment, 1.0, 0.015), run(Side::simulation, 0.7, 0.02)};
+  Checks checks;
+  checks.filmed.push_back(
+      {.run = 1, .seen = {number("s_b", 0.7, 0.02)}, .filmed = {number("s_b", 0.9, 0.02)}});
+  const auto matches = match_runs(runs);
+  EXPECT_EQ(real_differences_text(find_differences(runs, matches, checks), matches),
+            "  Gamma  real difference           experiment  simulation  difference    errors\n"
+            "  2.000  s_b                                1         0.7         0.3       4.0  camera 67 %\n"
+            "one start alone does not show whether defects cause a difference\n"
+            "0 other numbers agree within their errors (differences.csv in the report).\n");
+  EXPECT_EQ(real_differences_text({}, {}), "");
+}
+
 TEST(Differences, WithinTheErrorTheLargestSourceIsNamed) {
   Runs runs = {run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.8, 0.01),
                run(Side::simulation, 1.2, 0.01), run(Side::simulation, 1.1, 0.01)};

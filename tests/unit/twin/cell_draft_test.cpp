@@ -55,6 +55,26 @@ imaging::CellDescription read(const CellDraft& draft, const CellSurvey& s) {
   return imaging::read_cell(folder / "CELL.toml");
 }
 
+// Beads that are no plain discs look as large as the light makes them; where they touch they are one diameter
+// apart.
+TEST(CellDraft, TheScaleOfShadedBeadsIsTheDistanceOfTouchingOnes) {
+  CellSurvey s = survey();
+  s.beads->spacing = calibration::Estimate{12.8, 0.01};
+  EXPECT_EQ(key(draft_cell(s, {}), "camera.pixels_per_sigma").value, "12.0000");
+  s.plain_discs = false;
+  const CellDraft draft = draft_cell(s, {});
+  EXPECT_EQ(key(draft, "camera.pixels_per_sigma").value, "12.800");
+  EXPECT_NE(key(draft, "camera.pixels_per_sigma").comment.find("touching beads"), std::string::npos);
+  EXPECT_EQ(key(draft, "cell.width_sigma").value, "9.3750");
+  s.beads->spacing = calibration::Estimate{12.8, 0.03};  // too uncertain
+  EXPECT_EQ(key(draft_cell(s, {}), "camera.pixels_per_sigma").value, "12.0000");
+  s.beads->spacing.reset();
+  EXPECT_EQ(key(draft_cell(s, {}), "camera.pixels_per_sigma").value, "12.0000");
+  s.diameter_px = 12.5;
+  s.diameter_stated = true;
+  EXPECT_EQ(key(draft_cell(s, {}), "camera.pixels_per_sigma").value, "12.5");
+}
+
 TEST(CellDraft, ErrorsHaveTwoDigitsAndValuesAsManyDecimals) {
   EXPECT_EQ(value_text({12.34567, 0.0021}), "12.3457");
   EXPECT_EQ(value_text({12.34567, 0.21}), "12.35");
