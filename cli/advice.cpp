@@ -25,16 +25,16 @@ constexpr std::array<std::string_view, 6> kReadTrajectories = {"analyze", "compa
 constexpr std::array<std::string_view, 3> kReadScenes = {"simulate", "explain", "measure"};
 constexpr std::array<std::string_view, 3> kReadCells = {"track", "match", "calibrate"};
 
-/// A name in the folder of a missing file that differs from it by at most two letters.
+/// A name in the folder of a missing file that differs from it by at most three letters.
 std::string near_name(const fs::path& missing) {
   constexpr std::size_t kShortest = 4;
   std::error_code error;
   const fs::path folder = missing.has_parent_path() ? missing.parent_path() : ".";
   const std::string name = missing.filename().string();
-  if (name.size() < kShortest) return {};
+  if (missing.stem().string().size() < kShortest) return {};
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string other = entry.path().filename().string();
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string other = entry->path().filename().string();
     if (other.size() + 2 >= name.size() && other.size() <= name.size() + 2) names.push_back(other);
   }
   std::sort(names.begin(), names.end());

@@ -238,6 +238,95 @@ std::string pooled_csv(const Schedule& schedule) {
   return pooled.empty() ? std::string() : table_of(pooled, {}, {"runs"});
 }
 
+namespace {
+
+/// "0.41", or "0.41 ... 0.48" for several runs; "-" for none.
+std::string extremes(const std::vector<double>& values) {
+  if (values.empty()) return "-";
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const std::string first = fmt::format("{:.4g}", *low), last = fmt::format("{:.4g}", *high);
+  return first == last ? first : first + " ... " + last;
+}
+
+/// The cells of one row of grid_table: values of the axes, runs, phases, and the extremes of each number.
+std::vector<std::string> grid_row(const Curve& curve, const std::vector<std::string>& numbers) {
+  std::map<std::string, std::size_t> phases;
+  std::vector<std::vector<double>> values(numbers.size());
+  std::size_t failed = 0, done = 0;
+  for (std::size_t i = 0; i < curve.points.size(); ++i) {
+    if (!curve.results[i]) continue;
+    ++done;
+    if (curve.failed[i] != 0) {
+      ++failed;
+      continue;
+    }
+    const json results = json::parse(*curve.results[i]).value("results", json::object());
+    const auto value = [&](const std::string& name) {
+      const json result = results.value(name, json::object());
+      return result.value("value", json());
+    };
+    if (const json phase = value("phase"); phase.is_string()) ++phases[phase.get<std::string>()];
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+      if (const json number = value(numbers[k]); number.is_number())
+        values[k].push_back(number.get<double>());
+  }
+  std::vector<std::string> words;
+  for (const auto& [name, n] : phases)
+    words.push_back(phases.size() > 1 ? fmt::format("{} {}", n, name) : name);
+  if (failed > 0) words.push_back(fmt::format("{} failed", failed));
+  std::vector<std::string> row;
+  for (const std::string& literal : curve.values) {
+    const json value = value_of(literal);
+    row.push_back(value.is_string() ? value.get<std::string>() : json_text(value));
+  }
+  row.push_back(fmt::format("{}", done));
+  row.push_back(words.empty() ? "-" : fmt::format("{}", fmt::join(words, ", ")));
+  for (const auto& v : values) row.push_back(extremes(v));
+  return row;
+}
+
+/// Table of a grid for a terminal: phase and the first numbers at each set of axes.
+std::string grid_table(const Schedule& schedule) {
+  constexpr std::size_t kMostRows = 24, kMostNumbers = 2;
+  const Plan& plan = schedule.plan();
+  if (plan.search || plan.axes.empty()) return {};
+  std::vector<std::string> numbers = {"s_b", "s_c"};
+  if (!plan.results.empty()) numbers.assign(plan.results.begin(), plan.results.end());
+  std::erase(numbers, "phase");
+  numbers.resize(std::min(numbers.size(), kMostNumbers));
+  std::vector<std::vector<std::string>> table(1);
+  for (const Axis& axis : plan.axes) table[0].push_back(axis.key);
+  table[0].insert(table[0].end(), {"runs", "phase"});
+  table[0].insert(table[0].end(), numbers.begin(), numbers.end());
+  for (const Curve& curve : schedule.curves())
+    if (table.size() <= kMostRows) table.push_back(grid_row(curve, numbers));
+  // Columns that tell nothing: one run everywhere, or no phase because the plan does not want it.
+  const auto everywhere = [&](std::size_t column, const char* cell) {
+    return std::all_of(table.begin() + 1, table.end(), [&](const auto& row) { return row[column] == cell; });
+  };
+  const auto drop = [&](std::size_t column, const char* cell) {
+    if (everywhere(column, cell))
+      for (auto& row : table) row.erase(row.begin() + static_cast<std::ptrdiff_t>(column));
+  };
+  drop(plan.axes.size() + 1, "-");
+  drop(plan.axes.size(), "1");
+  std::string text;
+  for (const auto& row : table) {
+    std::string line;
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      std::size_t width = 0;
+      for (const auto& other : table) width = std::max(width, other[k].size());
+      line += k + 1 < row.size() ? fmt::format("{:<{}}  ", row[k], width) : row[k];
+    }
+    text += line + "\n";
+  }
+  if (const std::size_t all = schedule.curves().size(); all > kMostRows)
+    text += fmt::format("{} more rows: sweep collect writes all results to a table\n", all - kMostRows);
+  return text;
+}
+
+}  // namespace
+
 std::string collected_text(const Schedule& schedule) {
   const Plan& plan = schedule.plan();
   const Counts counts = schedule.counts();
@@ -251,7 +340,7 @@ std::string collected_text(const Schedule& schedule) {
     text += fmt::format("{}{} from {} {}{}\n", place, plan.verdict->name, plan.search->key,
                         curve.onset->text(), curve.complete ? "" : " (unfinished)");
   }
-  return text;
+  return text + grid_table(schedule);
 }
 
 }  // namespace twincell::sweep

@@ -34,7 +34,8 @@ std::vector<std::string> results_outside_csv(const nlohmann::json& collected);
 /// CSV of `pooled`, one line per set of axes; empty if no point has two runs.
 std::string pooled_csv(const Schedule& schedule);
 
-/// Summary for a reader: the number of points, then one line per onset.
+/// Summary for a reader: the number of points, then one line per onset, or, for a grid, a table of at most 24
+/// rows with the phase and the first two results at each set of axes (of several runs the extremes).
 std::string collected_text(const Schedule& schedule);
 
 }  // namespace twincell::sweep

@@ -79,7 +79,7 @@ std::string unit_of_result(const json& document, const std::string& result) {
 
 /// The label of an axis. `unit` is enhanced text.
 std::string with_unit(const std::string& label, const std::string& unit) {
-  return unit.empty() ? label : fmt::format("{} ({})", label, unit);
+  return unit.empty() ? label : fmt::format("{}, {}", label, unit);
 }
 
 /// The result at every set of axes: pooled where several seeds ran.

@@ -172,6 +172,11 @@ std::size_t runner_up(const SettingsChoice& choice) {
   for (std::size_t k = 1; k < choice.tried.size(); ++k) {
     const TriedSettings &first = choice.tried.front(), &other = choice.tried[k];
     if (!is_round(other)) continue;
+    // Fewer discs of the same size, with less evidence, are some of the chosen ones.
+    if (other.beads < first.beads && other.evidence < first.evidence &&
+        other.settings.bright == first.settings.bright &&
+        same_sizes(first.settings, other.settings, kOtherSize))
+      continue;
     const double difference = std::abs(static_cast<double>(other.beads) - static_cast<double>(first.beads));
     if (difference > kOtherNumber * static_cast<double>(first.beads)) return k;
     // A profile has no rim: with another diameter it describes the same discs.

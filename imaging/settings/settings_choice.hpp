@@ -54,8 +54,9 @@ SettingsChoice confirmed(const ExaminedRegion& region, const LocatorOptions& giv
 
 /// Whether the chosen settings won narrowly: the best settings with other discs (a diameter that differs by
 /// more than a tenth, except of as many discs by a common profile, which has no rim; another number of sizes;
-/// a number of discs that differs by more than a twentieth) have at least 0.9 of their evidence. \returns
-/// their index in `tried`; 0: the win is clear, or there are none
+/// a number of discs that differs by more than a twentieth, unless they are fewer, of the same size and
+/// polarity and with less evidence) have at least 0.9 of their evidence. \returns their index in `tried`; 0:
+/// the win is clear, or there are none
 std::size_t narrow_runner_up(const SettingsChoice& choice);
 
 /// The best settings with other discs, as above, whatever their evidence; 0: there are none.

@@ -58,6 +58,42 @@ def test_misspelled_words():
         assert run(*words, code=2).stderr == f"twincell: {sentence}\n", words
 
 
+def test_next_steps():
+    """Errors name the nearest file or word, or the command that makes what is missing."""
+    folder.mkdir(exist_ok=True)
+    frames, scene = folder / "frames", folder / "scene.toml"
+    frames.mkdir(exist_ok=True)
+    scene.write_text('preset = "fortini-huang-2015"\n')
+    out = folder / "out.h5"
+    for words, code, sentence in (
+        (("info", folder / "framse"), 3, f"{folder}/framse: does not exist; did you mean '{folder}/frames'?"),
+        (("explain", folder / "scnee.toml"), 3,
+         f"{folder}/scnee.toml: the file does not exist; did you mean '{scene}'?"),
+        (("info", "~/frames"), 3,
+         "~/frames: does not exist; the shell expands ~ only at the beginning of a word and outside of quotes."),
+        (("track", frames, "--cell", folder / "CELL.toml", "-o", out), 3,
+         f"{folder}/CELL.toml: the file does not exist; twincell new STACK -o {folder}/CELL.toml writes a cell file."),
+        (("analyze", scene), 3, f"; twincell simulate {scene} -o scene.h5 makes a trajectory of a scene."),
+        (("analyze", frames), 3, f"; twincell track {frames} -o frames.h5 makes a trajectory of a stack of frames."),
+        (("explain", frames), 3, "; explain reads a scene file (TOML); for a stack of frames see twincell new."),
+        (("explain", scene, "--set", "drive.gamma=1,5"), 2,
+         "a number is needed, not a string; a decimal number is written with a point: 1.5."),
+        (("explain", scene, "--set", "gamma=1.5"), 2, "there is no such key; did you mean 'drive.gamma'?"),
+        (("track", frames), 2, "--output is required; example: twincell track frames/ -o exp.h5"),
+        (("export", scene, "--to", "lamps", "-o", out), 2, "'lamps' is not lammps, xyz,"),
+        (("export", scene, "--to", "lamps", "-o", out), 2, "; did you mean 'lammps'?"),
+        (("sweep", "plan.toml"), 2, "there is no verb 'sweep plan.toml'; sweep has plan, run, "),
+        (("calibrate",), 2, "calibrate needs a word that says what: camera, walls, plate, beads or contacts."),
+    ):
+        said = run(*words, code=code).stderr
+        assert sentence in said and said.count("\n") == 1, f"{words}: {said}"
+
+
+def test_verbose_says_what_it_adds():
+    assert "Print every detail: beads, edge blur and time of every frame" in run("locate", "--help").stdout
+    assert "Print every detail; this verb always does" in run("info", "--help").stdout
+
+
 def test_manual():
     run("man", "-q", "-o", str(folder / "man1"))
     names = {page.stem for page in (folder / "man1").glob("*.1")}

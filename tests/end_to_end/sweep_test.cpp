@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <regex>
 #include <thread>
 
 #include "tests/support/program.hpp"
@@ -84,6 +85,12 @@ TEST_F(Sweeps, ASweepEndsInItsPictureAndPlotDrawsOtherResults) {
   const Ran ran = run_program({"sweep", "run", grid_, "--folder", at("one")});
   ASSERT_EQ(ran.code, kDone) << ran.err;
   EXPECT_NE(ran.out.find("picture: " + at("one/figures/sweep.svg")), std::string::npos) << ran.out;
+  // The table of the grid: the crystal has one run, for another seed does not change it.
+  EXPECT_NE(ran.out.find("drive.gamma  start.kind  runs  phase"), std::string::npos) << ran.out;
+  EXPECT_TRUE(std::regex_search(ran.out, std::regex(R"(\n1\.6 +random +2 +bouncing +\d\S* \.\.\. \d)")))
+      << ran.out;
+  EXPECT_TRUE(std::regex_search(ran.out, std::regex(R"(\n1\.05 +crystal_a +1 +co-moving +\d\S* +\d)")))
+      << ran.out;
   const std::string drawn = bytes_of(at("one/figures/sweep.dat"));
   // s_c of two drives and two starts, the random one with the interval of its two seeds.
   EXPECT_NE(drawn.find("1.05 "), std::string::npos) << drawn;

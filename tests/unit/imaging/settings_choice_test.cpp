@@ -89,6 +89,9 @@ TEST(SettingsChoice, RunnerUpHasOtherDiscs) {
   profile.beads = 50;
   EXPECT_EQ(runner_up(choose({tried(10, 1000, 100), profile})), 1U);
   EXPECT_EQ(runner_up(choose({tried(10, 1000, 100), tried(10.5, 990, 101)})), 0U);
+  EXPECT_EQ(runner_up(choose({tried(10, 1000, 100), tried(10.5, 990, 90)})), 0U) << "some of the same discs";
+  EXPECT_EQ(runner_up(choose({tried(10, 1000, 100), tried(10.5, 990, 110)})), 1U) << "more discs";
+  EXPECT_EQ(runner_up(choose({tried(10, 1000, 100), tried(10.5, 1010, 90)})), 1U) << "more evidence";
 }
 
 }  // namespace

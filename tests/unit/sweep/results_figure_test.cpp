@@ -53,8 +53,8 @@ TEST(ResultsFigure, AxesHaveTheirUnits) {
     {"axes": {"cell.width": 10, "contact.mu": 0.1}, "results": {"T_z": {"value": 2, "unit": "m g sigma"}, "q6": {"value": 0.7, "unit": "1"}}},
     {"axes": {"cell.width": 20, "contact.mu": 0.1}, "results": {"T_z": {"value": 3, "unit": "m g sigma"}, "q6": {"value": 0.6, "unit": "1"}}}]})";
   const analysis::Figure f = results_figure(points, {.result = "T_z"});
-  EXPECT_NE(f.plot.find("set xlabel 'cell.width (σ)'"), std::string::npos) << f.plot;
-  EXPECT_NE(f.plot.find("set ylabel 'T_{z} (m g σ)'"), std::string::npos) << f.plot;
+  EXPECT_NE(f.plot.find("set xlabel 'cell.width, σ'"), std::string::npos) << f.plot;
+  EXPECT_NE(f.plot.find("set ylabel 'T_{z}, m g σ'"), std::string::npos) << f.plot;
   const analysis::Figure curves =
       results_figure(points, {.result = "q6", .over = {"contact.mu", "cell.width"}});
   EXPECT_NE(curves.plot.find("set xlabel 'contact.mu'"), std::string::npos) << curves.plot;
