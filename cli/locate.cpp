@@ -182,7 +182,16 @@ void run(LocateOptions& o, const Common& common) {
   // Settings that the user did not give are determined from the first frames.
   imaging::RegionFrames seen(*frames, region);
   imaging::FramesAhead ahead(seen);
-  const auto [locator, settings_index, choice] = imaging::configure_locator(ahead, given, common.n_threads());
+  const auto [locator, settings_index, choice] = [&] {
+    try {
+      return imaging::configure_locator(ahead, given, common.n_threads());
+    } catch (const imaging::NoDiscs& refusal) {
+      if (o.explain)
+        print_result(common, {{"stack", o.stack}, {"settings_tried", settings_as_json(refusal.choice(), refine)}},
+                     settings_table(refusal.choice(), refine));
+      throw;
+    }
+  }();
   const std::int64_t settings_frame = range.number(settings_index);
   std::optional<LocateView> view;
   if (!o.view.empty()) view.emplace(o.locating, region, locator, choice);

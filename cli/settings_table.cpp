@@ -18,18 +18,19 @@ std::string options_of(const imaging::FoundSettings& settings, const std::string
 }
 
 std::string settings_table(const imaging::SettingsChoice& choice, const std::string& refine) {
-  if (choice.tried.empty())
-    return "no settings were tried: diameter and polarity are given, or nothing is seen\n";
+  const bool chosen = !choice.tried.empty();
+  const std::vector<imaging::TriedSettings>& all = chosen ? choice.tried : choice.refused;
+  if (all.empty()) return "no settings were tried: diameter and polarity are given, or nothing is seen\n";
   double most = 0;
-  for (const imaging::TriedSettings& t : choice.tried) most = std::max(most, t.evidence);
+  for (const imaging::TriedSettings& t : all) most = std::max(most, t.evidence);
   std::string text = "evidence/nats   share  beads  settings\n";
-  for (const imaging::TriedSettings& t : choice.tried)
-    text += fmt::format("{:13.0f}  {:6.3f}  {:5}  {}{}\n", t.evidence, t.evidence / most, t.beads,
-                        options_of(t.settings, refine),
-                        &t == &choice.tried.front() ? "  (chosen)"
-                        : t.not_chosen.empty()      ? ""
-                                                    : "  (" + t.not_chosen + ")");
-  return text + settings_lead(choice, refine);
+  for (const imaging::TriedSettings& t : all)
+    text += fmt::format("{:13.0f}  {:6.3f}  {:5}  {}{}\n", t.evidence, most > 0 ? t.evidence / most : 0.0,
+                        t.beads, options_of(t.settings, refine),
+                        chosen && &t == &all.front() ? "  (chosen)"
+                        : t.not_chosen.empty()       ? ""
+                                                     : "  (" + t.not_chosen + ")");
+  return chosen ? text + settings_lead(choice, refine) : text;
 }
 
 std::string settings_lead(const imaging::SettingsChoice& choice, const std::string& refine) {
@@ -59,13 +60,14 @@ std::string settings_warnings(const imaging::SettingsChoice& choice, const std::
 
 nlohmann::json settings_as_json(const imaging::SettingsChoice& choice, const std::string& refine) {
   nlohmann::json list = nlohmann::json::array();
-  for (const imaging::TriedSettings& t : choice.tried)
+  for (const imaging::TriedSettings& t : choice.tried.empty() ? choice.refused : choice.tried)
     list.push_back({{"options", options_of(t.settings, refine)},
                     {"evidence", t.evidence},
                     {"beads", t.beads},
                     {"rim_variation", t.rim_variation},
+                    {"rim_shift", t.rim_shift},
                     {"not_chosen", t.not_chosen},
-                    {"chosen", &t == &choice.tried.front()}});
+                    {"chosen", !choice.tried.empty() && &t == &choice.tried.front()}});
   return list;
 }
 

@@ -69,7 +69,9 @@ class Explanation {
       level_discs();
     }
     measure();
-    return gains();
+    PictureEvidence result = gains();
+    result.rims = shift_rims();
+    return result;
   }
 
  private:
@@ -287,6 +289,54 @@ class Explanation {
     return result;
   }
 
+  /// f'(r - R) of a size, by differences of its levels.
+  [[nodiscard]] static std::vector<double> slopes(const Size& s) {
+    std::vector<double> slope(s.count);
+    for (std::size_t k = 0; k < s.count; ++k) {
+      const std::size_t below = k > 0 ? k - 1 : 0, above = std::min(k + 1, s.count - 1);
+      slope[k] = kPerPixel * (s.level[above] - s.level[below]) / static_cast<double>(above - below);
+    }
+    return slope;
+  }
+
+  std::vector<RimShift> shift_rims() {
+    constexpr double kWidth = 0.35, kLeastWidth = 2;  // of R; px
+    constexpr auto kSectors = static_cast<double>(RimShift::kSectors);
+    std::vector<std::vector<double>> slope;
+    for (const Size& s : sizes_) slope.push_back(slopes(s));
+    std::vector<RimShift> rims(discs_.size());
+    std::vector<double> squares(discs_.size()), pixels(discs_.size());
+    for (int y = 0; y < grey_.rows; ++y)
+      for (int x = 0; x < grey_.cols; ++x) {
+        if (owner_(y, x) < 0) continue;
+        const auto b = static_cast<std::size_t>(owner_(y, x));
+        const Detection& d = discs_[b];
+        const auto out = static_cast<double>(out_(y, x));
+        if (std::abs(out) > std::max(kLeastWidth, kWidth * d.radius)) continue;
+        const Place p = place(sizes_[size_of_[b]], out);
+        const std::vector<double>& f = slope[size_of_[b]];
+        const double change = -amplitude_[b] * ((1 - p.part) * f[p.k] + p.part * f[p.k + 1]),
+                     e = residual(x, y), turn = std::atan2(y - d.y, x - d.x) / (2 * std::numbers::pi);
+        const auto sector = static_cast<std::size_t>((turn - std::floor(turn)) * kSectors) %
+                            RimShift::kSectors;
+        rims[b].px[sector] += change * e;
+        rims[b].weight[sector] += change * change;
+        squares[b] += e * e;
+        ++pixels[b];
+      }
+    for (std::size_t b = 0; b < rims.size(); ++b) {
+      RimShift& rim = rims[b];
+      for (std::size_t k = 0; k < RimShift::kSectors; ++k) {
+        if (rim.weight[k] <= 0) continue;
+        squares[b] -= rim.px[k] * rim.px[k] / rim.weight[k];
+        rim.px[k] /= rim.weight[k];
+        --pixels[b];
+      }
+      rim.variance = std::max(0.0, squares[b]) / std::max(1.0, pixels[b]);
+    }
+    return rims;
+  }
+
   const cv::Mat1f& grey_;
   const std::vector<Detection>& discs_;
   double noise_;
@@ -334,7 +384,8 @@ double noise_level(const cv::Mat1f& grey) {
 PictureEvidence picture_evidence(const cv::Mat& grey, const std::vector<Detection>& discs,
                                  const std::vector<double>& radii_px, double neighbour_radius_px) {
   if (discs.empty() || grey.empty())
-    return {0, std::vector<double>(discs.size(), 0.0), std::vector<double>(discs.size(), 0.0)};
+    return {0, std::vector<double>(discs.size(), 0.0), std::vector<double>(discs.size(), 0.0),
+            std::vector<RimShift>(discs.size())};
   cv::Mat1f levels;
   grey.convertTo(levels, CV_32F);
   return Explanation(levels, discs, radii_px, neighbour_radius_px).evidence();

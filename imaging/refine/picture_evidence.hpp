@@ -20,6 +20,7 @@
 /// Each disc costs (5/2) ln N (x, y, R, a, o) and each size (n/2) ln N for its n profile levels, N the number
 /// of pixels (Schwarz, Ann. Stat. 6, 461 (1978)).
 
+#include <array>
 #include <cstddef>
 #include <opencv2/core.hpp>
 #include <vector>
@@ -28,6 +29,15 @@
 
 namespace twincell::imaging {
 
+/// Shift of the rim of a disc outwards from its circle in equal sectors of directions, the first from 0 to
+/// 2 pi/24, from the residuals of its own pixels near the rim: to first order e_1 = -a_b f'(r - R) px.
+struct RimShift {
+  static constexpr std::size_t kSectors = 24;
+  std::array<double, kSectors> px{};      ///< 0 where nothing is seen
+  std::array<double, kSectors> weight{};  ///< sum of (a_b f')^2
+  double variance = 0;  ///< of the residuals that no shift explains: px[k] has the variance variance/weight[k]
+};
+
 /// Result for one set of discs, in nats: differences are logarithms of ratios of likelihoods.
 struct PictureEvidence {
   double total = 0;             ///< of the whole picture; 0 without discs
@@ -35,6 +45,7 @@ struct PictureEvidence {
   /// Mean of ln(1 + (e_1/s_1)^2) over the pixels of each disc: how unlike the other discs of its size it is.
   /// 0.53 for normal residuals of the common scale.
   std::vector<double> misfit;
+  std::vector<RimShift> rims;  ///< of the discs
 };
 
 /// \param grey       CV_8U, CV_16U or CV_32F, one channel

@@ -231,7 +231,7 @@ std::vector<FoundSettings> small_profiles(const cv::Mat& grey, const LocatorOpti
 
 /// What explains more than the chosen settings but is not round, if anything and of one size.
 std::optional<FoundSettings> best_not_round(const SettingsChoice& choice) {
-  const TriedSettings* best = choice.not_round.empty() ? nullptr : choice.not_round.data();
+  const TriedSettings* best = not_round(choice);
   double to_beat = choice.tried.empty() ? 0 : choice.tried.front().evidence;
   for (const TriedSettings& t : choice.tried)
     if (!is_round(t) && t.evidence > to_beat) best = &t, to_beat = t.evidence;
@@ -298,7 +298,8 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   // Discs of sizes that are not searched for hide rims of the others, which then do not seem round.
   const auto with = [&](const std::vector<FoundSettings>& more) {
     std::vector<TriedSettings> every = choice.tried;
-    every.insert(every.end(), choice.not_round.begin(), choice.not_round.end());
+    for (const TriedSettings& t : choice.refused)
+      if (!is_round(t)) every.push_back(t);
     for (const TriedSettings& t : try_settings(region, given, more, threads)) every.push_back(t);
     return confirmed(region, given, std::move(every));
   };
@@ -306,9 +307,10 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
     if (auto mixed = find_polydisperse(grey, given, all, *unlike)) choice = with({*mixed});
   if (choice.tried.empty() && one_size && given.refine.method == kExactRefiner.word) {
     region.neighbour_radius_px = kSmallestRadius;
-    std::vector<TriedSettings> not_round = std::move(choice.not_round);
-    choice = confirmed(region, given, try_settings(region, given, small_profiles(grey, given), threads));
-    if (choice.not_round.empty()) choice.not_round = std::move(not_round);
+    SettingsChoice small =
+        confirmed(region, given, try_settings(region, given, small_profiles(grey, given), threads));
+    if (!small.tried.empty() || not_round(small) != nullptr || choice.refused.empty())
+      choice = std::move(small);
   }
   if (choice.tried.empty()) return choice;
   // The size of the winner, by its rims alone and with further sizes.

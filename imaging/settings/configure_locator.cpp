@@ -8,7 +8,6 @@
 
 #include "core/error.hpp"
 #include "core/median.hpp"
-#include "imaging/refine/rim_variation.hpp"
 #include "imaging/settings/auto_configuration.hpp"
 #include "imaging/settings/find_contrast.hpp"
 #include "imaging/settings/settings_choice.hpp"
@@ -40,14 +39,17 @@ LocatorOptions at_rim(const cv::Mat& frame, LocatorOptions settled, const std::v
 LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given, int threads) {
   constexpr std::size_t kLast = 32;
   std::optional<LocatorOptions> first;  // first settings found, even if they locate no bead
-  double not_round = 0;                 // rim variation of other objects
+  SettingsChoice refused;               // on the first frame, or on the first that shows what is not round
   for (std::size_t k = 0; k <= kLast; k = std::max<std::size_t>(2 * k, k + 1)) {
     const cv::Mat* frame = frames.look(k);
     if (frame == nullptr) break;
     if (is_blank(*frame)) continue;
     SettingsChoice choice = choose_settings(*frame, given, threads);
-    if (!choice.not_round.empty()) not_round = std::max(not_round, choice.not_round.front().rim_variation);
-    if (choice.tried.empty()) continue;
+    if (choice.tried.empty()) {
+      if (refused.refused.empty() || (not_round(refused) == nullptr && not_round(choice) != nullptr))
+        refused = std::move(choice);
+      continue;
+    }
     LocatorOptions settled = completed(choice.tried.front().settings, given);
     if (model_of(settled.refine) == DiscModel::circle)
       settled.preprocess.contrast = find_contrast(*frame, settled);
@@ -58,17 +60,16 @@ LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given, in
       settled = at_rim(*frame, std::move(settled), beads);
     return {settled, static_cast<std::int64_t>(k), std::move(choice)};
   }
-  if (!first && given.diameter_px <= 0 && not_round > 0)
-    throw InputError(
-        Where{.file = frames.source().current(), .key = {}},
-        fmt::format("shows no discs: what stands out is not round (its rims vary by {:.2f} with the "
-                    "direction, those of beads by at most {:g}); if it shows beads, give their "
-                    "diameter with --diameter.",
-                    not_round, kMostRimVariation));
-  if (!first && given.diameter_px <= 0)
-    throw InputError(
-        Where{.file = frames.source().current(), .key = {}},
-        "shows no discs from which a bead diameter could be estimated; give it with --diameter.");
+  if (!first && given.diameter_px <= 0) {
+    const TriedSettings* other = not_round(refused);
+    const std::string complaint =
+        other == nullptr
+            ? "shows no discs from which a bead diameter could be estimated; give it with --diameter."
+            : fmt::format("shows no discs: what stands out is not round ({}); if it shows beads, give their "
+                          "diameter with --diameter.",
+                          roundness_in_words(*other));
+    throw NoDiscs(Where{.file = frames.source().current(), .key = {}}, complaint, std::move(refused));
+  }
   LocatorOptions found = first.value_or(given);
   found.polarity_known = true;
   return {found, 0, {}};

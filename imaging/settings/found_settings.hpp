@@ -23,8 +23,8 @@ struct TriedSettings {
   FoundSettings settings;
   double evidence = 0;    ///< of the picture for the discs located with them, nats (picture_evidence.hpp)
   std::size_t beads = 0;  ///< discs located with them
-  double rim_variation =
-      0;                   ///< of these discs (rim_variation.hpp); they are not round above kMostRimVariation
+  double rim_variation = 0;  ///< of these discs (rim_variation.hpp); they are not round above kMostRimVariation
+  double rim_shift = 0;      ///< of these discs (rim_shift.hpp), in radii; not round above kMostRimShift
   std::string not_chosen;  ///< why others with less evidence were chosen, in words; empty: they were not
 };
 
@@ -32,8 +32,8 @@ struct TriedSettings {
 struct SettingsChoice {
   std::vector<TriedSettings> tried;  ///< the chosen ones first, the others by evidence; empty: none explains
                                      ///< anything
-  std::vector<TriedSettings> not_round;  ///< if empty: those that explain something but are not round, by
-                                         ///< evidence
+  std::vector<TriedSettings> refused;  ///< if empty: what was tried, with the reasons; those that explain
+                                       ///< something but are not round first, each by evidence
 };
 
 }  // namespace twincell::imaging

@@ -8,6 +8,7 @@
 #include "core/in_parallel.hpp"
 #include "imaging/refine/picture_evidence.hpp"
 #include "imaging/refine/profile_fit.hpp"
+#include "imaging/refine/rim_shift.hpp"
 #include "imaging/refine/rim_variation.hpp"
 #include "imaging/settings/find_contrast.hpp"
 
@@ -65,24 +66,60 @@ TriedSettings try_one(const ExaminedRegion& region, const LocatorOptions& given,
   const std::vector<Detection>& beads = located.beads;
   std::vector<double> radii = {0.5 * options.diameter_px};
   for (const double d : options.other_diameters_px) radii.push_back(0.5 * d);
-  TriedSettings tried{settings,
-                      picture_evidence(region.picture, beads, radii, region.neighbour_radius_px).total,
-                      beads.size()};
+  const PictureEvidence evidence = picture_evidence(region.picture, beads, radii, region.neighbour_radius_px);
+  TriedSettings tried{settings, evidence.total, beads.size()};
   // A stated size is that of round objects. Rims of patterned discs vary with direction.
-  if (given.diameter_px <= 0 && model_of(options.refine) != DiscModel::circle)
+  if (given.diameter_px <= 0 && model_of(options.refine) != DiscModel::circle) {
     tried.rim_variation = rim_variation(region.picture, beads, radii, other_discs(located.dropped));
+    tried.rim_shift = rim_shift(beads, evidence.rims, radii);
+  }
   return tried;
 }
 
+constexpr double kLeastShare = 5;  // nats a disc: odds of 150 that it is one
+constexpr double kPart = 0.5;      // least evidence, in that of what is not round
+
 bool explains(const TriedSettings& tried) {
-  constexpr double kLeastShare = 5;  // nats a disc: odds of 150 that it is one
   return tried.evidence > 0 && tried.evidence >= kLeastShare * static_cast<double>(tried.beads);
+}
+
+bool less(const TriedSettings& a, const TriedSettings& b) {
+  return a.evidence < b.evidence;
+}
+
+/// None chosen: what explains something but is not round first, each by evidence.
+SettingsChoice refuse(std::vector<TriedSettings> tried) {
+  for (TriedSettings& t : tried)
+    if (!explains(t))
+      t.not_chosen = fmt::format("less than {:g} nats a bead", kLeastShare);
+    else if (is_round(t))
+      t.not_chosen = fmt::format("less than {:g} of the evidence of what is not round", kPart);
+  const auto others = std::stable_partition(tried.begin(), tried.end(),
+                                            [](const auto& t) { return explains(t) && !is_round(t); });
+  const auto more = [](const auto& a, const auto& b) { return less(b, a); };
+  std::stable_sort(tried.begin(), others, more);
+  std::stable_sort(others, tried.end(), more);
+  return {{}, std::move(tried)};
 }
 
 }  // namespace
 
+std::string roundness_in_words(const TriedSettings& tried) {
+  return tried.rim_variation > kMostRimVariation
+             ? fmt::format("levels at the rims vary by {:.2f} with the direction, those of beads by at most {:g}",
+                           tried.rim_variation, kMostRimVariation)
+             : fmt::format("rims deviate from circles by {:.3f} radii, those of beads by at most {:g}",
+                           tried.rim_shift, kMostRimShift);
+}
+
 bool is_round(const TriedSettings& tried) {
-  return tried.rim_variation <= kMostRimVariation;
+  return tried.rim_variation <= kMostRimVariation && tried.rim_shift <= kMostRimShift;
+}
+
+const TriedSettings* not_round(const SettingsChoice& choice) {
+  if (choice.refused.empty()) return nullptr;
+  const TriedSettings& first = choice.refused.front();
+  return explains(first) && !is_round(first) ? &first : nullptr;
 }
 
 LocatorOptions completed(const FoundSettings& settings, LocatorOptions given) {
@@ -110,21 +147,18 @@ std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const Loca
 }
 
 SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
-  constexpr double kDiscs = 3, kTimesArea = 2, kPart = 0.5;
+  constexpr double kDiscs = 3, kTimesArea = 2;
   const auto sizes = [](const TriedSettings& t) { return t.settings.other_diameters_px.size(); };
-  const auto less = [](const auto& a, const auto& b) { return a.evidence < b.evidence; };
   for (TriedSettings& t : tried)
-    t.not_chosen = is_round(t) ? "" : fmt::format("not round: rim variation {:.2f}", t.rim_variation);
+    t.not_chosen = is_round(t) ? "" : "not round: " + roundness_in_words(t);
   // Preferred ones first, then those that are not round.
   const auto end = std::stable_partition(tried.begin(), tried.end(), is_round);
   const auto best = std::max_element(tried.begin(), end, less);
-  std::vector<TriedSettings> others(end, tried.end());
-  std::erase_if(others, [](const TriedSettings& t) { return !explains(t); });
-  std::stable_sort(others.begin(), others.end(), [&](const auto& a, const auto& b) { return less(b, a); });
   // Parts of larger objects may be round.
-  if (best == end || !explains(*best) ||
-      (!others.empty() && best->evidence < kPart * others.front().evidence))
-    return {{}, std::move(others)};
+  if (best == end || !explains(*best) || std::any_of(end, tried.end(), [&](const TriedSettings& t) {
+        return explains(t) && best->evidence < kPart * t.evidence;
+      }))
+    return refuse(std::move(tried));
   const double share = best->evidence / static_cast<double>(best->beads);
   auto chosen = best;
   const auto first = tried.begin();

@@ -22,8 +22,16 @@ struct ExaminedRegion {
   double clearly = kClearly;       ///< of choose()
 };
 
-/// Whether the discs located with settings may be discs: their rim variation is at most kMostRimVariation.
+/// Whether the objects located with settings may be discs: rim_variation and rim_shift are at most
+/// kMostRimVariation and kMostRimShift.
 bool is_round(const TriedSettings& tried);
+
+/// Why they are not discs: the measure that is above its limit, with both numbers.
+std::string roundness_in_words(const TriedSettings& tried);
+
+/// The settings with most evidence among those that explain something but are not round, if none were chosen;
+/// null: there are none.
+const TriedSettings* not_round(const SettingsChoice& choice);
 
 /// The given options, completed with settings.
 LocatorOptions completed(const FoundSettings& settings, LocatorOptions given);
@@ -40,11 +48,13 @@ std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const Loca
 /// first in the list, which are preferred, suffice: those with as many sizes must have 1.25 times their
 /// evidence and at least half of the area of their discs, and those with further sizes must gain the share of
 /// three discs. The evidence knows neither that gaps of a crystal are not discs nor which fit is the most
-/// accurate; the order of the list does. Settings whose discs are not round (rim_variation.hpp) are never
+/// accurate; the order of the list does. Settings whose discs are not round (is_round) are never
 /// chosen. Each of the others that has more evidence than the chosen ones, or is not round, says why it was
-/// not chosen. \param tried the preferred ones first; those without positive evidence are never chosen
-/// \param clearly the factor 1.25 \returns empty if the largest
-/// evidence of round discs is below 5 nats a disc
+/// not chosen.
+/// \param tried the preferred ones first; those without positive evidence are never chosen
+/// \param clearly the factor 1.25
+/// \returns none chosen if the largest evidence of round discs is below 5 nats a disc, or below half of that of
+///     what is not round
 SettingsChoice choose(std::vector<TriedSettings> tried, double clearly = kClearly);
 
 /// Chooses, then fits the region with the chosen settings in full: a fit that was cut short may hold discs

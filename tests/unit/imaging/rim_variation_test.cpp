@@ -4,58 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
-#include <numbers>
-#include <opencv2/imgproc.hpp>
-#include <random>
+#include <opencv2/core.hpp>
 #include <vector>
+
+#include "tests/unit/imaging/outlines.hpp"
 
 namespace twincell::imaging {
 namespace {
 
-constexpr int kSide = 240, kPitch = 60;
-constexpr double kLight = 200, kDark = 30, kBlur = 1, kRadius = 14;
-
-/// Dark objects on a lattice with the outline r(direction), each turned differently, drawn with 4 x 4 samples
-/// per pixel, blurred, and with noise.
-cv::Mat1f objects(const std::function<double(double)>& outline, double noise, bool turned = true) {
-  constexpr int kSamples = 4;
-  cv::Mat1f fine(kSide * kSamples, kSide * kSamples, static_cast<float>(kLight));
-  for (int j = 0; j < fine.rows; ++j)
-    for (int i = 0; i < fine.cols; ++i) {
-      const double x = (i + 0.5) / kSamples - 0.5, y = (j + 0.5) / kSamples - 0.5;
-      const int column = static_cast<int>(x / kPitch), row = static_cast<int>(y / kPitch);
-      const double dx = x - (column + 0.5) * kPitch, dy = y - (row + 0.5) * kPitch;
-      const double turn = std::atan2(dy, dx) + (turned ? column + 4 * row : 0);
-      if (std::hypot(dx, dy) < outline(turn)) fine(j, i) = static_cast<float>(kDark);
-    }
-  cv::GaussianBlur(fine, fine, {0, 0}, kBlur * kSamples);
-  cv::Mat1f grey;
-  cv::resize(fine, grey, {kSide, kSide}, 0, 0, cv::INTER_AREA);
-  std::mt19937_64 random(5);
-  std::normal_distribution<float> normal(0, static_cast<float>(noise));
-  for (float& v : grey) v += normal(random);
-  return grey;
-}
+using namespace outlines;
 
 /// All of one size.
 double variation(const cv::Mat1f& grey, const std::vector<Detection>& of) {
   return rim_variation(grey, of, {kRadius});
-}
-
-std::vector<Detection> discs(double radius) {
-  std::vector<Detection> all;
-  for (int row = 0; row < kSide / kPitch; ++row)
-    for (int column = 0; column < kSide / kPitch; ++column) {
-      Detection d;
-      d.x = (column + 0.5) * kPitch, d.y = (row + 0.5) * kPitch, d.radius = radius;
-      all.push_back(d);
-    }
-  return all;
-}
-
-double circle(double /*turn*/) {
-  return kRadius;
 }
 
 TEST(RimVariation, OfDiscsIsNoneWithAnyNoise) {
@@ -70,9 +31,6 @@ TEST(RimVariation, OfDiscsIsNoneWithAnyNoise) {
 // An outline R (1 + e cos m t) displaces the edge by e R cos m t; to first order the levels change in
 // proportion to e, and their variance to e^2.
 TEST(RimVariation, GrowsWithTheSquareOfTheHarmonic) {
-  const auto wavy = [](double share, int m) {
-    return [share, m](double turn) { return kRadius * (1 + share * std::cos(m * turn)); };
-  };
   for (const int m : {3, 4, 5}) {
     const double less = variation(objects(wavy(0.03, m), 0.5), discs(kRadius)),
                  more = variation(objects(wavy(0.06, m), 0.5), discs(kRadius));
@@ -83,15 +41,9 @@ TEST(RimVariation, GrowsWithTheSquareOfTheHarmonic) {
 }
 
 TEST(RimVariation, TellsPolygonsFromDiscs) {
-  const auto polygon = [](int sides) {
-    return [sides](double turn) {
-      const double part = 2 * std::numbers::pi / sides, t = turn - part * std::floor(turn / part);
-      return 0.9 * kRadius / std::cos(t - 0.5 * part);
-    };
-  };
-  EXPECT_GT(variation(objects(polygon(3), 2), discs(kRadius)), 2 * kMostRimVariation);
-  EXPECT_GT(variation(objects(polygon(4), 2), discs(kRadius)), kMostRimVariation);
-  EXPECT_LT(variation(objects(polygon(6), 2), discs(kRadius)), kMostRimVariation);
+  EXPECT_GT(variation(objects(polygon(3, 0.9 * kRadius), 2), discs(kRadius)), 2 * kMostRimVariation);
+  EXPECT_GT(variation(objects(polygon(4, 0.9 * kRadius), 2), discs(kRadius)), kMostRimVariation);
+  EXPECT_LT(variation(objects(polygon(6, 0.9 * kRadius), 2), discs(kRadius)), kMostRimVariation);
 }
 
 // Ellipses in random directions are not discs; those in one direction are stretched or moved discs.
@@ -117,12 +69,8 @@ TEST(RimVariation, OfRimsThatAreNotSeenIsNone) {
 
 // Fragments that are taken for a second size are not hidden by the discs of the first.
 TEST(RimVariation, IsThatOfTheLeastRoundSize) {
-  const auto triangle = [](double turn) {
-    const double part = 2 * std::numbers::pi / 3, t = turn - part * std::floor(turn / part);
-    return 0.5 * kRadius / std::cos(t - 0.5 * part);
-  };
   cv::Mat1f grey = objects(circle, 1);
-  objects(triangle, 1)(cv::Rect(0, 0, kSide, kPitch)).copyTo(grey(cv::Rect(0, 0, kSide, kPitch)));
+  objects(polygon(3, 0.5 * kRadius), 1)(cv::Rect(0, 0, kSide, kPitch)).copyTo(grey(cv::Rect(0, 0, kSide, kPitch)));
   std::vector<Detection> both = discs(kRadius);
   for (std::size_t k = 0; k < both.size(); ++k)
     if (k < kSide / kPitch) both[k].radius = 0.6 * kRadius;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -14,7 +15,7 @@ TriedSettings tried(double diameter, double evidence, std::size_t beads, std::ve
   FoundSettings settings;
   settings.diameter_px = diameter;
   settings.other_diameters_px = std::move(others);
-  return {settings, evidence, beads, 0, {}};
+  return {settings, evidence, beads, 0, 0, {}};
 }
 
 double chosen(std::vector<TriedSettings> all) {
@@ -48,16 +49,40 @@ TEST(SettingsChoice, OnlyRoundDiscsAreChosen) {
   squares.rim_variation = 0.09;
   EXPECT_EQ(chosen({squares, tried(20, 2600, 5), tried(30, 2500, 5)}), 20);
   const SettingsChoice choice = choose({squares, tried(20, 2600, 5)});
-  EXPECT_EQ(choice.tried[1].not_chosen, "not round: rim variation 0.09");
+  EXPECT_EQ(choice.tried[1].not_chosen,
+            "not round: levels at the rims vary by 0.09 with the direction, those of beads by at most 0.03");
   EXPECT_EQ(runner_up(choice), 0U);
-  EXPECT_TRUE(choice.not_round.empty());
+  EXPECT_TRUE(choice.refused.empty());
+  TriedSettings hexagons = tried(10, 5000, 10);
+  hexagons.rim_shift = 0.0312;
+  EXPECT_EQ(choose({hexagons, tried(20, 2600, 5)}).tried[1].not_chosen,
+            "not round: rims deviate from circles by 0.031 radii, those of beads by at most 0.02");
   // Round parts of objects that explain twice as much are no beads.
   const SettingsChoice none = choose({squares, tried(20, 2400, 5)});
   EXPECT_TRUE(none.tried.empty());
-  ASSERT_EQ(none.not_round.size(), 1U);
-  EXPECT_EQ(none.not_round[0].rim_variation, 0.09);
+  ASSERT_NE(not_round(none), nullptr);
+  EXPECT_EQ(not_round(none)->rim_variation, 0.09);
   squares.evidence = 40;  // 4 nats a disc: no sign of anything
-  EXPECT_TRUE(choose({squares}).not_round.empty());
+  EXPECT_EQ(not_round(choose({squares})), nullptr);
+}
+
+// If none are chosen, each says why, those that are not round first.
+TEST(SettingsChoice, WhatIsRefusedSaysWhy) {
+  TriedSettings squares = tried(10, 5000, 10);
+  squares.rim_variation = 0.09;
+  const SettingsChoice none = choose({tried(20, 2400, 5), tried(30, 4, 1), squares, tried(40, 2450, 9)});
+  ASSERT_EQ(none.refused.size(), 4U);
+  std::vector<double> diameters;
+  std::vector<std::string> reasons;
+  for (const TriedSettings& t : none.refused) {
+    diameters.push_back(t.settings.diameter_px);
+    reasons.push_back(t.not_chosen);
+  }
+  EXPECT_EQ(diameters, (std::vector<double>{10, 40, 20, 30}));
+  EXPECT_EQ(reasons[0].substr(0, 10), "not round:");
+  EXPECT_EQ(reasons[1], "less than 0.5 of the evidence of what is not round");
+  EXPECT_EQ(reasons[2], reasons[1]);
+  EXPECT_EQ(reasons[3], "less than 5 nats a bead");
 }
 
 // Settings with more evidence than the chosen ones say why they were not chosen, and only they do.

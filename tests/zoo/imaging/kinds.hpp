@@ -307,6 +307,74 @@ inline Exhibit polygons(double d, int sides, double stretched = 1) {
   return {canvas.exposed(kBlur, kNoise, 13), {}};
 }
 
+/// Dark objects of the shape inside(u, v), with u and v from -1 to 1, in random directions.
+inline Exhibit shapes(double d, const std::function<bool(double, double)>& inside) {
+  Painter canvas(side_of(d), kLight);
+  std::mt19937_64 random(16);
+  std::uniform_real_distribution<double> uniform(0, 2 * std::numbers::pi);
+  for (const Place& p : apart(d, inner(canvas.side(), 0.7 * d), 1.5, 16)) {
+    const double turn = uniform(random), c = std::cos(turn), s = std::sin(turn);
+    canvas.disc(p.x, p.y, p.radius, [&](double u, double v, double below) {
+      return inside(u * c + v * s, v * c - u * s) ? 20 : below;
+    });
+  }
+  return {canvas.exposed(kBlur, kNoise, 16), {}};
+}
+
+/// Spherocylinders. \param stretched ratio of length and width
+inline Exhibit rods(double length, double stretched) {
+  const double radius = 1 / stretched;
+  return shapes(length, [=](double u, double v) {
+    return std::hypot(std::max(0.0, std::abs(u) - 1 + radius), v) < radius;
+  });
+}
+
+inline Exhibit crosses(double d) {
+  return shapes(d, [](double u, double v) { return std::min(std::abs(u), std::abs(v)) < 0.28; });
+}
+
+/// A picture of level(x, y).
+inline Exhibit pattern(const std::function<double(double, double)>& level) {
+  Painter canvas(300, kLight);
+  canvas.everywhere([&](double x, double y, double) { return level(x, y); });
+  return {canvas.exposed(kBlur, kNoise, 17), {}};
+}
+
+inline Exhibit checkerboard(double pitch) {
+  return pattern([=](double x, double y) {
+    return std::fmod(std::floor(x / pitch) + std::floor(y / pitch), 2.0) == 0 ? 200.0 : 30.0;
+  });
+}
+
+/// Bricks of twice the height in length, with joints of 0.15 heights, in running bond.
+inline Exhibit bricks(double height) {
+  return pattern([=](double x, double y) {
+    const double row = std::floor(y / height), shifted = x + height * std::fmod(row, 2.0);
+    const bool joint = y - row * height < 0.15 * height || std::fmod(shifted, 2 * height) < 0.15 * height;
+    return joint ? 200.0 : 90.0;
+  });
+}
+
+/// Cells with walls of 0.2 pitches, around the points of a triangular lattice. \param walls, cells grey levels
+inline Exhibit honeycomb(double pitch, double walls, double cells) {
+  return pattern([=](double x, double y) {
+    std::array<double, 2> nearest = {HUGE_VAL, HUGE_VAL};  // distances to the two nearest points
+    const double row = std::round(y / (std::sqrt(0.75) * pitch));
+    for (double j = row - 1; j <= row + 1; ++j) {
+      const double offset = 0.5 * pitch * std::abs(std::fmod(j, 2.0)),
+                   column = std::round((x - offset) / pitch);
+      for (double i = column - 1; i <= column + 1; ++i) {
+        const double r = std::hypot(x - offset - i * pitch, y - j * std::sqrt(0.75) * pitch);
+        if (r < nearest[0])
+          nearest = {r, nearest[0]};
+        else
+          nearest[1] = std::min(nearest[1], r);
+      }
+    }
+    return nearest[1] - nearest[0] < 0.2 * pitch ? walls : cells;
+  });
+}
+
 /// A page of text.
 inline Exhibit page(double height) {
   Painter canvas(300, 230);
@@ -360,6 +428,14 @@ inline const std::vector<Kind>& without_beads() {
   static const std::vector<Kind> all = {{"triangles", [](double d) { return polygons(d, 3); }},
                                         {"squares", [](double d) { return polygons(d, 4); }},
                                         {"ellipses", [](double d) { return polygons(d, 60, 2); }},
+                                        {"hexagons", [](double d) { return polygons(d, 6); }},
+                                        {"rods", [](double d) { return rods(d, 2); }},
+                                        {"long rods", [](double d) { return rods(d, 4); }},
+                                        {"crosses", crosses},
+                                        {"checkerboard", checkerboard},
+                                        {"bricks", bricks},
+                                        {"honeycomb", [](double d) { return honeycomb(d, 40, 200); }},
+                                        {"tiles", [](double d) { return honeycomb(d, 200, 60); }},
                                         {"text", page},
                                         {"spots", spots}};
   return all;
