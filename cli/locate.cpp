@@ -187,7 +187,8 @@ void run(LocateOptions& o, const Common& common) {
       return imaging::configure_locator(ahead, given, common.n_threads());
     } catch (const imaging::NoDiscs& refusal) {
       if (o.explain)
-        print_result(common, {{"stack", o.stack}, {"settings_tried", settings_as_json(refusal.choice(), refine)}},
+        print_result(common,
+                     {{"stack", o.stack}, {"settings_tried", settings_as_json(refusal.choice(), refine)}},
                      settings_table(refusal.choice(), refine));
       throw;
     }

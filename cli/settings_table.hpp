@@ -14,8 +14,8 @@ namespace twincell::cli {
 std::string options_of(const imaging::FoundSettings& settings, const std::string& refine);
 
 /// One line for each of the settings: evidence, its share of the largest, number of beads, options. The
-/// chosen ones come first. Below it, by how much they won over the best settings with other discs. If none were
-/// chosen, those that were refused, with the reasons.
+/// chosen ones come first. Below it, by how much they won over the best settings with other discs. If none
+/// were chosen, those that were refused, with the reasons.
 std::string settings_table(const imaging::SettingsChoice& choice, const std::string& refine);
 
 /// By how much the chosen settings won over the best ones with other discs, in a sentence. \pre choice.tried

@@ -301,6 +301,7 @@ class Explanation {
 
   std::vector<RimShift> shift_rims() {
     constexpr double kWidth = 0.35, kLeastWidth = 2;  // of R; px
+    constexpr double kNoise = 2, kModel = 0.02;  // largest residuals by chance: noise; range of the profile
     constexpr auto kSectors = static_cast<double>(RimShift::kSectors);
     std::vector<std::vector<double>> slope;
     for (const Size& s : sizes_) slope.push_back(slopes(s));
@@ -317,8 +318,8 @@ class Explanation {
         const std::vector<double>& f = slope[size_of_[b]];
         const double change = -amplitude_[b] * ((1 - p.part) * f[p.k] + p.part * f[p.k + 1]),
                      e = residual(x, y), turn = std::atan2(y - d.y, x - d.x) / (2 * std::numbers::pi);
-        const auto sector = static_cast<std::size_t>((turn - std::floor(turn)) * kSectors) %
-                            RimShift::kSectors;
+        const auto sector =
+            static_cast<std::size_t>((turn - std::floor(turn)) * kSectors) % RimShift::kSectors;
         rims[b].px[sector] += change * e;
         rims[b].weight[sector] += change * change;
         squares[b] += e * e;
@@ -326,13 +327,22 @@ class Explanation {
       }
     for (std::size_t b = 0; b < rims.size(); ++b) {
       RimShift& rim = rims[b];
+      const std::vector<double>& level = sizes_[size_of_[b]].level;
+      const auto [low, high] = std::minmax_element(level.begin(), level.end());
+      const double range = amplitude_[b] * (*high - *low);
+      if (range < noise_) {  // no rim is seen
+        rim = {};
+        continue;
+      }
       for (std::size_t k = 0; k < RimShift::kSectors; ++k) {
         if (rim.weight[k] <= 0) continue;
         squares[b] -= rim.px[k] * rim.px[k] / rim.weight[k];
         rim.px[k] /= rim.weight[k];
         --pixels[b];
       }
-      rim.variance = std::max(0.0, squares[b]) / std::max(1.0, pixels[b]);
+      // More is no noise, but another shape.
+      const double by_chance = std::hypot(kNoise * noise_, kModel * range);
+      rim.variance = std::min(std::max(0.0, squares[b]) / std::max(1.0, pixels[b]), by_chance * by_chance);
     }
     return rims;
   }

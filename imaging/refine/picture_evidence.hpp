@@ -35,7 +35,9 @@ struct RimShift {
   static constexpr std::size_t kSectors = 24;
   std::array<double, kSectors> px{};      ///< 0 where nothing is seen
   std::array<double, kSectors> weight{};  ///< sum of (a_b f')^2
-  double variance = 0;  ///< of the residuals that no shift explains: px[k] has the variance variance/weight[k]
+  /// Of the residuals that no shift explains, but at most that of twice the noise and 0.02 of the range of
+  /// the profile: px[k] has the variance variance/weight[k].
+  double variance = 0;
 };
 
 /// Result for one set of discs, in nats: differences are logarithms of ratios of likelihoods.

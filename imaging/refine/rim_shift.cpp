@@ -23,8 +23,12 @@ std::array<double, kSectors> in_sectors(double (*of)(double), double times) {
     f[k] = of(times * 2 * std::numbers::pi * (static_cast<double>(k) + 0.5) / kSectors);
   return f;
 }
-double cosine(double x) { return std::cos(x); }
-double sine(double x) { return std::sin(x); }
+double cosine(double x) {
+  return std::cos(x);
+}
+double sine(double x) {
+  return std::sin(x);
+}
 
 /// Subtracts what a shift of the circle and a change of its radius explain. \returns false if too little of
 /// the rim is seen
@@ -93,9 +97,9 @@ double below_quartile(std::vector<double> values) {
 }  // namespace
 
 double rim_shift(const std::vector<Detection>& discs, const std::vector<RimShift>& rims,
-                           const std::vector<double>& radii_px) {
-  constexpr std::size_t kEnough = 3;      // discs that show what they have in common
-  constexpr double kLeastWeight = 0.1;    // of a sector that is seen
+                 const std::vector<double>& radii_px) {
+  constexpr std::size_t kEnough = 3;    // discs that show what they have in common
+  constexpr double kLeastWeight = 0.1;  // of a sector that is seen
   std::vector<double> most;
   for (const RimShift& rim : rims) most.push_back(*std::max_element(rim.weight.begin(), rim.weight.end()));
   if (most.empty()) return 0;

@@ -65,9 +65,10 @@ LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given, in
     const std::string complaint =
         other == nullptr
             ? "shows no discs from which a bead diameter could be estimated; give it with --diameter."
-            : fmt::format("shows no discs: what stands out is not round ({}); if it shows beads, give their "
-                          "diameter with --diameter.",
-                          roundness_in_words(*other));
+            : fmt::format(
+                  "shows no discs: what stands out is not round ({}); if it shows beads, give their "
+                  "diameter with --diameter.",
+                  roundness_in_words(*other));
     throw NoDiscs(Where{.file = frames.source().current(), .key = {}}, complaint, std::move(refused));
   }
   LocatorOptions found = first.value_or(given);

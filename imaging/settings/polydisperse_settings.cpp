@@ -11,9 +11,9 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr double kApart = 1.12, kFar = 2.5;  // smallest and largest ratio of two sizes
-constexpr double kLargestDiameter = 400;     // px
-constexpr double kGood = 0.8;                // smallest score of a disc whose size is used
+constexpr double kApart = 1.12, kFar = 2.5;                      // smallest and largest ratio of two sizes
+constexpr double kSmallestDiameter = 3, kLargestDiameter = 400;  // px
+constexpr double kGood = 0.8;  // smallest score of a disc whose size is used
 
 /// Result of a trial with discs of several sizes.
 struct Mix {
@@ -59,7 +59,9 @@ Mix try_sizes(const cv::Mat& grey, const LocatorOptions& given, bool bright, dou
   for (std::size_t k = 0; k < diameters.size(); ++k) {
     mix.least_share = std::min(mix.least_share, static_cast<double>(radii[k].size()) /
                                                     std::max(1.0, static_cast<double>(located.beads.size())));
-    mix.diameters.push_back(radii[k].empty() ? diameters[k] : 2 * upper_median(std::move(radii[k])));
+    mix.diameters.push_back(radii[k].empty() ? diameters[k]
+                                             : std::clamp(2 * upper_median(std::move(radii[k])),
+                                                          kSmallestDiameter, kLargestDiameter));
   }
   return mix;
 }

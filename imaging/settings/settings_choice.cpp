@@ -106,8 +106,9 @@ SettingsChoice refuse(std::vector<TriedSettings> tried) {
 
 std::string roundness_in_words(const TriedSettings& tried) {
   return tried.rim_variation > kMostRimVariation
-             ? fmt::format("levels at the rims vary by {:.2f} with the direction, those of beads by at most {:g}",
-                           tried.rim_variation, kMostRimVariation)
+             ? fmt::format(
+                   "levels at the rims vary by {:.2f} with the direction, those of beads by at most {:g}",
+                   tried.rim_variation, kMostRimVariation)
              : fmt::format("rims deviate from circles by {:.3f} radii, those of beads by at most {:g}",
                            tried.rim_shift, kMostRimShift);
 }
@@ -149,8 +150,7 @@ std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const Loca
 SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
   constexpr double kDiscs = 3, kTimesArea = 2;
   const auto sizes = [](const TriedSettings& t) { return t.settings.other_diameters_px.size(); };
-  for (TriedSettings& t : tried)
-    t.not_chosen = is_round(t) ? "" : "not round: " + roundness_in_words(t);
+  for (TriedSettings& t : tried) t.not_chosen = is_round(t) ? "" : "not round: " + roundness_in_words(t);
   // Preferred ones first, then those that are not round.
   const auto end = std::stable_partition(tried.begin(), tried.end(), is_round);
   const auto best = std::max_element(tried.begin(), end, less);

@@ -26,7 +26,7 @@ struct ExaminedRegion {
 /// kMostRimVariation and kMostRimShift.
 bool is_round(const TriedSettings& tried);
 
-/// Why they are not discs: the measure that is above its limit, with both numbers.
+/// Why they are not discs: the measure that is above its limit, and the limit.
 std::string roundness_in_words(const TriedSettings& tried);
 
 /// The settings with most evidence among those that explain something but are not round, if none were chosen;
@@ -53,7 +53,8 @@ std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const Loca
 /// not chosen.
 /// \param tried the preferred ones first; those without positive evidence are never chosen
 /// \param clearly the factor 1.25
-/// \returns none chosen if the largest evidence of round discs is below 5 nats a disc, or below half of that of
+/// \returns none chosen if the largest evidence of round discs is below 5 nats a disc, or below half of that
+/// of
 ///     what is not round
 SettingsChoice choose(std::vector<TriedSettings> tried, double clearly = kClearly);
 

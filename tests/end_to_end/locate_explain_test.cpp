@@ -70,6 +70,7 @@ TEST(LocateExplain, PrintsWhatWasTriedAndAClearWin) {
   EXPECT_EQ(chosen["beads"], 49);
   EXPECT_EQ(chosen["not_chosen"], "");
   EXPECT_LT(chosen["rim_variation"].get<double>(), 0.03);
+  EXPECT_LT(chosen["rim_shift"].get<double>(), 0.02);
   EXPECT_TRUE(said["warnings"].empty()) << said["warnings"];
   EXPECT_GT(chosen["evidence"].get<double>(), 49 * 100);
   // The options, pasted, give the same beads.
@@ -97,10 +98,18 @@ TEST(LocateExplain, WhatIsNotRoundIsRefusedUnlessADiameterIsGiven) {
     }
   cv::GaussianBlur(squares, squares, {0, 0}, 0.8);
   cv::imwrite(picture, squares);
-  const Ran refused = run_program({"locate", picture, "-o", table});
+  const Ran refused = run_program({"locate", picture, "-o", table, "--explain"});
   EXPECT_EQ(refused.code, 3) << refused.err;
   EXPECT_NE(refused.err.find("what stands out is not round"), std::string::npos) << refused.err;
   EXPECT_FALSE(std::filesystem::exists(table));
+  // What was tried, with the reasons.
+  EXPECT_EQ(refused.out.substr(0, 13), "evidence/nats");
+  EXPECT_NE(refused.out.find("(not round: "), std::string::npos) << refused.out;
+  EXPECT_EQ(refused.out.find("(chosen)"), std::string::npos);
+  const Ran document = run_program({"locate", picture, "-o", table, "--explain", "--json"});
+  const nlohmann::json first = nlohmann::json::parse(document.out)["settings_tried"].at(0);
+  EXPECT_EQ(first["chosen"], false);
+  EXPECT_EQ(first["not_chosen"].get<std::string>().substr(0, 10), "not round:");
   const Ran given = run_program({"locate", picture, "-o", table, "--diameter", "20"});
   EXPECT_EQ(given.code, 0) << given.err;
 }

@@ -355,7 +355,8 @@ inline Exhibit bricks(double height) {
   });
 }
 
-/// Cells with walls of 0.2 pitches, around the points of a triangular lattice. \param walls, cells grey levels
+/// Cells with walls of 0.2 pitches, around the points of a triangular lattice. \param walls, cells grey
+/// levels
 inline Exhibit honeycomb(double pitch, double walls, double cells) {
   return pattern([=](double x, double y) {
     std::array<double, 2> nearest = {HUGE_VAL, HUGE_VAL};  // distances to the two nearest points
