@@ -35,7 +35,8 @@
   EACH(velocity_autocorrelation)   \
   EACH(velocity_distribution)      \
   EACH(contact_force)              \
-  EACH(stress)
+  EACH(stress)                     \
+  EACH(stress_field)
 
 namespace twincell::analysis {
 
@@ -246,6 +247,14 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
   if ((options.discard_cycles > 0 || options.cycles > 0) && !context.info.columns.phase)
     throw ConfigError({.file = trajectory.name(), .key = options.cycles > 0 ? "cycles" : "discard"},
                       "cycles cannot be chosen from a trajectory whose frames have no cycle number");
+
+  if (const std::optional<Drive>& drive = context.info.drive; drive && drive->ramp && options.cycles == 0)
+    throw ConfigError(
+        {.file = trajectory.name(), .key = "drive.ramp"},
+        fmt::format(
+            "the drive changes during the run (displacement {}), so that no result is that of one "
+            "drive; analyse windows of cycles (--window-cycles), or choose cycles (--discard, --cycles)",
+            drive->formula()));
 
   // Observables: only those with a requested result.
   struct Chosen {

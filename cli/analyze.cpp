@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -15,6 +16,7 @@
 #include "analysis/observable/timed_analysis.hpp"
 #include "analysis/report/spatial_figures.hpp"
 #include "analysis/runs/pooling.hpp"
+#include "analysis/runs/windows.hpp"
 #include "cli/output.hpp"
 #include "cli/profile.hpp"
 #include "cli/results_summary.hpp"
@@ -28,14 +30,19 @@ namespace {
 
 struct AnalyzeOptions {
   std::vector<std::string> trajectories;
-  std::string output;
+  std::string output, table;
   std::string figures;
   std::string rest_height;
   std::string s_b = "variance";
   std::string neighbours = "cutoff";
   analysis::AnalysisOptions analysis;
+  std::int64_t window = 0;  ///< cycles; 0: the run as a whole
   bool profile = false;
 };
+
+Product window_table() {
+  return Product::text("a table of windows", "first_cycle,cycles,gamma_begin,");
+}
 
 Product figure_folder() {
   return Product::whole_folder("the figures of an analysis");
@@ -69,7 +76,97 @@ double rest_height_of(const std::string& said) {
   return sum / static_cast<double>(trajectory.n_frames());
 }
 
+/// Numbers that the table of windows shows if no result is requested by name.
+constexpr std::array kWindowNumbers = {"s_b", "s_c", "q6"};
+
+nlohmann::json as_json(const std::vector<analysis::Window>& windows) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const analysis::Window& w : windows) {
+    nlohmann::json one = {{"first_cycle", w.first_cycle}, {"cycles", w.cycles}};
+    if (w.drive) {
+      const auto& [begin, end] = *w.drive;
+      one["gamma"] = {begin.gamma(), end.gamma()};
+      one["omega"] = {begin.omega, end.omega};
+      one["amplitude"] = {begin.amplitude, end.amplitude};
+    }
+    one["results"] = nlohmann::json::parse(analysis::results_json(w.results));
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+/// One line for each window: cycles, Gamma, omega, phase, then numbers.
+std::string as_text(const std::vector<analysis::Window>& windows, const std::vector<std::string>& only) {
+  std::vector<std::string> names;
+  for (const analysis::Result& r : windows.front().results) {
+    const bool usual =
+        std::find(kWindowNumbers.begin(), kWindowNumbers.end(), r.name) != kWindowNumbers.end();
+    if (r.shape.empty() && r.name != "phase" && (only.empty() ? usual : true)) names.push_back(r.name);
+  }
+  const bool phase = analysis::seek_result(windows.front().results, "phase") != nullptr;
+  std::string text = fmt::format("{:<13} {:<17} {:<17}", "cycles", "Gamma (g = 1)", "omega, 1/t0");
+  if (phase) text += fmt::format(" {:<12}", "phase");
+  for (const std::string& name : names) text += fmt::format(" {:>12}", name);
+  const auto change = [](double begin, double end) {
+    return begin == end ? fmt::format("{:.4g}", begin) : fmt::format("{:.4g} to {:.4g}", begin, end);
+  };
+  for (const analysis::Window& w : windows) {
+    text += fmt::format("\n{:<13}", fmt::format("{} to {}", w.first_cycle, w.first_cycle + w.cycles - 1));
+    if (w.drive)
+      text += fmt::format(" {:<17} {:<17}", change((*w.drive)[0].gamma(), (*w.drive)[1].gamma()),
+                          change((*w.drive)[0].omega, (*w.drive)[1].omega));
+    else
+      text += fmt::format(" {:<17} {:<17}", "not known", "not known");
+    if (phase) {
+      const analysis::Result& r = analysis::find_result(w.results, "phase");
+      text += fmt::format(" {:<12}", r.present() ? r.text : "absent");
+    }
+    for (const std::string& name : names) {
+      const analysis::Result& r = analysis::find_result(w.results, name);
+      text += !r.present()     ? fmt::format(" {:>12}", "absent")
+              : r.text.empty() ? fmt::format(" {:>12.5g}", r.value())
+                               : fmt::format(" {:>12}", r.text);
+    }
+    while (text.back() == ' ') text.pop_back();
+  }
+  return text + '\n';
+}
+
+/// Analyses a run in windows. The results go to a table, if one is requested.
+void run_windows(const Common& common, const AnalyzeOptions& options) {
+  const auto refuse = [](const char* option, const char* why) {
+    throw ConfigError({.file = {}, .key = option}, why);
+  };
+  if (options.trajectories.size() > 1)
+    refuse("--window-cycles", "divides one trajectory into windows; several were given.");
+  if (!options.figures.empty())
+    refuse("--figures", "draws a whole run; with --window-cycles, use --table FILE.csv.");
+  if (options.profile) refuse("--profile", "measures one analysis; --window-cycles makes several.");
+  if (!options.output.empty())
+    refuse("--output",
+           "is the results of a whole run; with --window-cycles, use --table FILE.csv or --json.");
+  const H5mdReader trajectory(options.trajectories.front());
+  std::vector<analysis::Window> windows;
+  {
+    ProgressBar progress(common, "analyze");
+    windows = analysis::analyze_windows(trajectory, options.analysis, options.window, progress);
+  }
+  Provenance provenance = common.provenance();
+  provenance.inputs.assign(options.trajectories.begin(), options.trajectories.end());
+  std::string text = as_text(windows, options.analysis.only);
+  if (!options.table.empty()) {
+    write_text_file(options.table, analysis::windows_csv(windows), window_table());
+    text += options.table + "\n";
+  }
+  print_result(common,
+               {{"windows", as_json(windows)}, {"provenance", nlohmann::json::parse(provenance.to_json())}},
+               text);
+}
+
 void run(const Common& common, const AnalyzeOptions& options) {
+  if (options.window > 0) return run_windows(common, options);
+  if (!options.table.empty())
+    throw ConfigError({.file = {}, .key = "--table"}, "is a table of windows; give --window-cycles.");
   Profile profile(options.profile);
   std::vector<std::unique_ptr<H5mdReader>> readers;
   std::vector<const TrajectorySource*> trajectories;
@@ -143,6 +240,14 @@ void add_analyze(CLI::App& program, Common& common) {
   verb.add_option("--cycles", options->analysis.cycles,
                   "Number of cycles analysed after the skipped ones, N_f; 0: all")
       ->capture_default_str();
+  verb.add_option("--window-cycles", options->window,
+                  "Analyse the run in windows of this number of cycles, each by itself; a run whose drive "
+                  "changes (drive.ramp) needs it")
+      ->check(CLI::Range(1, 1'000'000));
+  writes(common, verb,
+         verb.add_option("--table", options->table,
+                         "With --window-cycles: also write the windows to this CSV file, one row each"),
+         window_table());
   verb.add_option("--tracers", options->analysis.tracers,
                   "Identities of the tracers, comma separated; default: the marked tracers, otherwise the "
                   "line at mid-height")

@@ -1,4 +1,4 @@
-// twincell draw TRAJ.h5 -o picture.png | film.mp4: a trajectory as a drawing, without a camera.
+// twincell draw TRAJ.h5 -o picture.png | film.mp4 | page.html: a trajectory as a drawing, without a camera.
 
 #include <fmt/format.h>
 
@@ -6,8 +6,10 @@
 #include <memory>
 
 #include "analysis/colouring/colouring.hpp"
+#include "cli/draw_page.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
+#include "core/atomic_file.hpp"
 #include "core/counted.hpp"
 #include "core/output_rules.hpp"
 #include "imaging/drawing/drawing.hpp"
@@ -26,10 +28,36 @@ struct DrawOptions {
   imaging::DrawJob job;
 };
 
+/// ", speed 0 to 2.5 sigma/t0"
+std::string range_text(const DrawOptions& o, const std::array<double, 2>& range) {
+  std::string text =
+      fmt::format(", {} {:.4g} to {:.4g} {}", o.colour, range[0], range[1], o.job.colours.unit);
+  while (text.back() == ' ') text.pop_back();
+  return text;
+}
+
+void write_page(const H5mdReader& trajectory, const DrawOptions& o, const Common& common) {
+  DrawnPage page;
+  {
+    ProgressBar bar(common, "draw");
+    page = page_of(trajectory, o.job, o.trajectory, bar);
+  }
+  write_text_file(o.job.output, page.html, draw_page());
+  const double megabytes = static_cast<double>(page.html.size()) / 1e6;
+  nlohmann::json document = {{"output", o.job.output.string()},
+                             {"frames", page.frames},
+                             {"megabytes", megabytes},
+                             {"colour", o.colour}};
+  std::string text = fmt::format("{}, {:.3g} MB", counted(page.frames, "frame"), megabytes);
+  if (o.colour != kPlain) document["range"] = page.range, text += range_text(o, page.range);
+  print_result(common, document, fmt::format("{}\n{}\n", text, o.job.output.string()));
+}
+
 void run(DrawOptions& o, const Common& common) {
+  const bool page = o.job.output.extension() == ".html";
   if (o.fps_said && !o.job.film())
-    throw ConfigError({.file = {}, .key = "--fps"}, "applies to a film; the output is a picture.");
-  require_output(o.job.output, o.job.film() ? Product::film() : Product::picture());
+    throw ConfigError({.file = {}, .key = "--fps"}, "applies to a film or a page; the output is a picture.");
+  require_output(o.job.output, page ? draw_page() : o.job.film() ? Product::film() : Product::picture());
   if (!o.frames.empty()) o.job.frames = imaging::read_frame_range(o.frames, "--frames");
   if (!o.range.empty()) o.job.colours.range = {o.range[0], o.range[1]};
   const H5mdReader trajectory(o.trajectory);
@@ -41,6 +69,7 @@ void run(DrawOptions& o, const Common& common) {
       return colouring.of({.source = trajectory, .index = index, .frame = frame});
     };
   }
+  if (page) return write_page(trajectory, o, common);
   imaging::Drawn drawn;
   {
     ProgressBar bar(common, "draw");
@@ -55,9 +84,7 @@ void run(DrawOptions& o, const Common& common) {
       fmt::format("{}, {} x {} px", counted(drawn.frames, "frame"), drawn.size.width, drawn.size.height);
   if (o.colour != kPlain) {
     document["range"] = drawn.range;
-    text +=
-        fmt::format(", {} {:.4g} to {:.4g} {}", o.colour, drawn.range[0], drawn.range[1], o.job.colours.unit);
-    while (text.back() == ' ') text.pop_back();
+    text += range_text(o, drawn.range);
   }
   print_result(common, document, fmt::format("{}\n{}\n", text, o.job.output.string()));
 }
@@ -67,14 +94,15 @@ void run(DrawOptions& o, const Common& common) {
 void add_draw(CLI::App& program, Common& common) {
   auto o = std::make_shared<DrawOptions>();
   CLI::App& verb = add_verb(program, common, "draw",
-                            "Draw a trajectory as a picture or a film: beads coloured by a number, the cell, "
-                            "tracks, velocities and contact forces.",
+                            "Draw a trajectory as a picture, a film or a page that plays in a browser: beads "
+                            "coloured by a number, the cell, tracks, velocities and contact forces.",
                             "twincell draw sim.h5 -o film.mp4 --colour speed");
   verb.add_option("trajectory", o->trajectory, "Trajectory file (H5MD)")->required();
-  // Whether it is a picture or a film depends on the name; run() checks what may be replaced.
+  // Whether it is a picture, a film or a page depends on the name; run() checks what may be replaced.
   common.outputs.push_back({verb.add_option("-o,--output", o->job.output,
                                             "File to write. .png: the last of the frames; .mp4 or .avi: a "
-                                            "film of all frames")
+                                            "film of all frames; .html: a page that plays them and needs no "
+                                            "other file, at most 32 MB")
                                 ->required(),
                             nullptr, Product::picture()});
   verb.add_option("--frames", o->frames,
@@ -105,7 +133,8 @@ void add_draw(CLI::App& program, Common& common) {
                   "Scale; default: the longer side of the cell is about 900 px")
       ->check(CLI::Range(0.1, 1000.0));
   CLI::Option* const fps =
-      verb.add_option("--fps", o->job.frames_per_second, "Frames per second of the film; default: 25");
+      verb.add_option("--fps", o->job.frames_per_second,
+                      "Frames per second of a film, and of a page when it opens; default: 25");
   verb.callback([o, fps, &common] {
     o->fps_said = fps->count() > 0;
     run(*o, common);

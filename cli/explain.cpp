@@ -66,12 +66,13 @@ std::string as_text(const sim::Plan& plan, const sim::Scene& scene, const sim::C
       "\nMachine\n"
       "  memory: about {} of {} available; frames written by `simulate`: at least {}",
       sim::bytes_text(demand.memory), sim::bytes_text(memory_available()), sim::bytes_text(demand.disk));
-  s += fmt::format("\nSteps\n  {} per period, dt = {:.6e} t0, set by {}: {:.4e} t0 divided by {:g}\n",
-                   plan.steps_per_period, plan.dt, plan.shortest().name, plan.shortest().time,
-                   scene.steps_per_contact);
+  s += fmt::format("\nSteps\n  {} per period{}, dt = {:.6e} t0, set by {}: {:.4e} t0 divided by {:g}\n",
+                   plan.steps_per_period,
+                   scene.drive.ramp && scene.drive.ramp->changes_frequency() ? " before the ramp" : "",
+                   plan.dt, plan.shortest().name, plan.shortest().time, scene.steps_per_contact);
   const double steps = static_cast<double>(plan.steps), beads = static_cast<double>(cost.beads);
   s += fmt::format("  {} beads x {} periods = {:.3g} particle-steps, without settling\n", cost.beads,
-                   plan.steps / plan.steps_per_period, steps * beads);
+                   plan.cycles_before + scene.cycles, steps * beads);
   if (!cost.stopped.empty()) return s + "Time\n  unknown: the short test run stopped: " + cost.stopped + "\n";
   s += fmt::format("Time\n  {}, at {:.3g} million particle-steps/s; ",
                    duration(steps * cost.seconds_per_step), 1e-6 * beads / cost.seconds_per_step);

@@ -58,6 +58,17 @@ nlohmann::json describe(const H5mdReader& file) {
                   {"gamma", t.drive->gamma()},
                   {"k_m", t.drive->k_m()},
                   {"displacement", t.drive->formula()}};
+  if (t.drive && t.drive->ramp) {
+    const Drive end =
+        t.drive->at(t.drive->ramp->first + t.drive->ramp->cycles / (t.drive->ramp->returns ? 2 : 1));
+    d["drive"]["ramp"] = {{"amplitude", end.amplitude},
+                          {"omega", end.omega},
+                          {"gamma", end.gamma()},
+                          {"k_m", end.k_m()},
+                          {"first_cycle", t.drive->ramp->first},
+                          {"cycles", t.drive->ramp->cycles},
+                          {"returns", t.drive->ramp->returns}};
+  }
   if (t.phases_per_cycle > 0) d["phases_per_cycle"] = t.phases_per_cycle;
   if (t.scale.sigma_m) d["scale"]["sigma_m"] = *t.scale.sigma_m;
   if (t.scale.gravity_m_s2) d["scale"]["gravity_m_s2"] = *t.scale.gravity_m_s2;
@@ -112,6 +123,13 @@ std::string as_text(const nlohmann::json& d) {
                      d["drive"]["displacement"].get<std::string>(), d["drive"]["amplitude"].get<double>(),
                      d["drive"]["omega"].get<double>(), d["drive"]["gamma"].get<double>(),
                      d["drive"]["k_m"].get<double>());
+  if (d.contains("drive") && d["drive"].contains("ramp"))
+    s +=
+        fmt::format("  ramp        to A = {:.6g} sigma, omega = {:.6g}/t0, Gamma = {:.6g} {}in {:g} cycles\n",
+                    d["drive"]["ramp"]["amplitude"].get<double>(), d["drive"]["ramp"]["omega"].get<double>(),
+                    d["drive"]["ramp"]["gamma"].get<double>(),
+                    d["drive"]["ramp"]["returns"].get<bool>() ? "and back " : "",
+                    d["drive"]["ramp"]["cycles"].get<double>());
   s += d.contains("phases_per_cycle")
            ? fmt::format("  phases      {} per cycle\n", d["phases_per_cycle"].get<int>())
            : "  phases      not phase-locked\n";

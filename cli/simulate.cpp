@@ -92,6 +92,18 @@ nlohmann::json start_of(const sim::Scene& s) {
   return start;
 }
 
+/// The end of the ramp of the drive; null without one.
+nlohmann::json ramp_of(const sim::Scene& s) {
+  if (!s.drive.ramp) return {};
+  const DriveLevel& to = s.drive.ramp->to;
+  nlohmann::json ramp = {{"amplitude", to.amplitude},
+                         {"omega", to.omega},
+                         {"linear", s.drive.ramp->linear_quantity()},
+                         {"returns", s.drive.ramp->returns}};
+  if (s.g() > 0) ramp["gamma"] = to.amplitude * to.omega * to.omega / s.g();
+  return ramp;
+}
+
 nlohmann::json describe(const sim::Simulation& run, const std::string& output, std::int64_t begun_at,
                         double seconds) {
   const sim::Scene& s = run.scene();
@@ -104,6 +116,7 @@ nlohmann::json describe(const sim::Simulation& run, const std::string& output, s
                       {"amplitude", s.drive.amplitude},
                       {"omega", s.drive.omega},
                       {"displacement", s.drive.formula()},
+                      {"ramp", ramp_of(s)},
                       {"cycles", s.cycles},
                       {"discarded", s.discard},
                       {"continued_from_step", begun_at > 0 ? nlohmann::json(begun_at) : nlohmann::json()},
@@ -125,8 +138,13 @@ nlohmann::json describe(const sim::Simulation& run, const std::string& output, s
 std::string as_text(const nlohmann::json& d, bool verbose) {
   std::string s = fmt::format("{} beads, {}\n", d["beads"].get<long>(), d["kernel"].get<std::string>());
   if (d["gamma"].is_number())
-    s += fmt::format("Gamma = {:.6g}, K_m = {:.6g}, displacement {}\n", d["gamma"].get<double>(),
-                     d["k_m"].get<double>(), d["displacement"].get<std::string>());
+    s += fmt::format("Gamma = {:.6g}, K_m = {:.6g}{}, displacement {}\n", d["gamma"].get<double>(),
+                     d["k_m"].get<double>(), d["ramp"].is_object() ? " before the ramp" : "",
+                     d["displacement"].get<std::string>());
+  if (d["ramp"].contains("gamma"))
+    s += fmt::format("Gamma = {:.6g} at the {} of the ramp, {} linear in time\n",
+                     d["ramp"]["gamma"].get<double>(), d["ramp"]["returns"].get<bool>() ? "turn" : "end",
+                     d["ramp"]["linear"].get<std::string>());
   s += fmt::format("{} steps per period, dt = {:.6e} t0\n", d["steps_per_period"].get<long>(),
                    d["dt"].get<double>());
   const auto& start = d["start"];

@@ -5,6 +5,7 @@
 #include "analysis/observable/observable.hpp"
 #include "analysis/observable/results.hpp"
 #include "analysis/runs/pooling.hpp"
+#include "analysis/runs/windows.hpp"
 #include "core/error.hpp"
 #include "python/trajectory.hpp"
 
@@ -52,6 +53,35 @@ Results analyzed(const std::vector<std::shared_ptr<Trajectory>>& trajectories,
       runs.push_back(analysis::analyze(*source, options, progress));
     return Results{runs.size() > 1 ? analysis::pool(runs) : runs.front(), provenance.to_json()};
   });
+}
+
+/// A window and its results.
+struct WindowOfRun {
+  analysis::Window window;
+  Results results;
+};
+
+std::vector<WindowOfRun> analyzed_windows(const Trajectory& trajectory,
+                                          const analysis::AnalysisOptions& options, std::int64_t cycles,
+                                          const py::object& callback) {
+  Provenance provenance = provenance_of("twincell.analyze_windows (Python)");
+  if (std::filesystem::is_regular_file(trajectory.source().name()))
+    provenance.inputs.emplace_back(trajectory.source().name());
+  return unlocked(callback, [&](Progress& progress) {
+    std::vector<WindowOfRun> all;
+    for (analysis::Window& w : analysis::analyze_windows(trajectory.source(), options, cycles, progress)) {
+      Results results{std::move(w.results), provenance.to_json()};
+      all.push_back({std::move(w), std::move(results)});
+    }
+    return all;
+  });
+}
+
+/// (at its beginning, at its end) of a number of the drive, or None.
+template <class Number>
+py::object ends_of(const WindowOfRun& w, Number number) {
+  if (!w.window.drive) return py::none();
+  return py::make_tuple(number((*w.window.drive)[0]), number((*w.window.drive)[1]));
 }
 
 /// Names of results: a list, or a text with commas as of the verb.
@@ -134,6 +164,39 @@ void bind_analysis(py::module_& module) {
       .def("__str__", [](const Results& r) { return analysis::results_text(r.all); })
       .def("__repr__",
            [](const Results& r) { return fmt::format("<twincell.Results: {} results>", r.all.size()); });
+  py::class_<WindowOfRun>(module, "Window", header_text("analysis/runs/windows.hpp", "Window"))
+      .def_property_readonly(
+          "first_cycle", [](const WindowOfRun& w) { return w.window.first_cycle; }, "Its first cycle.")
+      .def_property_readonly(
+          "cycles", [](const WindowOfRun& w) { return w.window.cycles; }, "Number of its cycles.")
+      .def_property_readonly(
+          "gamma", [](const WindowOfRun& w) { return ends_of(w, [](const Drive& d) { return d.gamma(); }); },
+          "(at its beginning, at its end) of Gamma with g = 1, or None without a drive.")
+      .def_property_readonly(
+          "omega", [](const WindowOfRun& w) { return ends_of(w, [](const Drive& d) { return d.omega; }); },
+          "(at its beginning, at its end) of omega, 1/t0, or None without a drive.")
+      .def_readonly("results", &WindowOfRun::results, "Its results.")
+      .def("__repr__", [](const WindowOfRun& w) {
+        return fmt::format("<twincell.Window: cycles {} to {}>", w.window.first_cycle,
+                           w.window.first_cycle + w.window.cycles - 1);
+      });
+  module.def(
+      "analyze_windows",
+      [](const py::object& trajectory, std::int64_t window_cycles, const py::object& only,
+         std::int64_t discard, const std::string& s_b, const std::string& neighbours,
+         std::optional<double> rest_height, std::optional<double> cutoff, const py::object& callback) {
+        const analysis::AnalysisOptions options = {.discard_cycles = discard,
+                                                   .s_b = analysis::s_b_named(s_b),
+                                                   .neighbours = analysis::neighbour_rule_named(neighbours),
+                                                   .neighbour_cutoff = cutoff,
+                                                   .rest_height = rest_height,
+                                                   .only = names_of(only)};
+        return analyzed_windows(*trajectory_of(trajectory), options, window_cycles, callback);
+      },
+      py::arg("trajectory"), py::arg("window_cycles"), py::arg("only") = py::list(), py::kw_only(),
+      py::arg("discard") = 0, py::arg("s_b") = "variance", py::arg("neighbours") = "cutoff",
+      py::arg("rest_height") = py::none(), py::arg("cutoff") = py::none(), py::arg("callback") = py::none(),
+      header_text("analysis/runs/windows.hpp", "analyze_windows"));
   module.def("result_names", &analysis::result_names, header_text(kHeader, "result_names"));
   module.def(
       "analyze",

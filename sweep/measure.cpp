@@ -2,6 +2,7 @@
 
 #include "analysis/motion/centre_of_mass.hpp"
 #include "analysis/observable/timed_analysis.hpp"
+#include "core/error.hpp"
 #include "sweep/live_trajectory.hpp"
 #include "sweep/precision_rule.hpp"
 
@@ -19,6 +20,14 @@ double height_of_centre(const std::vector<sim::Bead>& beads) {
 }
 
 }  // namespace
+
+void require_one_drive(const sim::Scene& scene) {
+  if (scene.drive.ramp)
+    throw ConfigError(
+        scene.where("drive.ramp"),
+        "changes the drive during the run, so that results of the whole run are those of no one "
+        "drive; use `simulate`, then `analyze --window-cycles`.");
+}
 
 Measured measure(sim::Simulation& run, analysis::AnalysisOptions options, const std::string& name,
                  Progress& progress, const Observer& observer, StageTimes* times) {

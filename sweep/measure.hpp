@@ -31,6 +31,10 @@ struct Observer {
   std::function<bool(const Frame&)> frame = [](const Frame&) { return true; };
 };
 
+/// \throws ConfigError if the drive of the scene has a ramp: results of the whole run would be those of no
+/// drive
+void require_one_drive(const sim::Scene& scene);
+
 /// Runs the bed and analyses it while it runs, to the scene's last cycle or until its [until] is reached
 /// (precision_rule.hpp). delta_h_cm is relative to the rest height given in the options, else to the height
 /// of this bed after settling on the plate at rest (A = 0). There is no rest height without gravity, or if

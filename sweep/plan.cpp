@@ -19,6 +19,7 @@
 #include "sim/scene/resource_demand.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/start/start.hpp"
+#include "sweep/measure.hpp"
 
 namespace twincell::sweep {
 
@@ -234,6 +235,7 @@ Point make_point(const Plan& plan, const std::vector<std::string>& values, std::
   }
   if (at) assignments.push_back(fmt::format("{}={}", plan.search->key, *at));
   sim::Scene scene = scene_of(plan, assignments);
+  require_one_drive(scene);
 
   Point point;
   point.values = values;

@@ -38,8 +38,39 @@ double sum_over(const std::vector<Harmonic>& harmonics, double first, const Term
 
 }  // namespace
 
+namespace {
+
+/// The bracket w of the drive and its derivatives by the phase angle omega t.
+struct Waveform {
+  double w, slope, bend;
+};
+Waveform waveform(const std::vector<Harmonic>& harmonics, double fraction) {
+  return {sum_over(harmonics, std::sin(kTurn * fraction),
+                   [&](double n, const Harmonic& h) { return std::sin(angle_of(h, n, fraction)); }),
+          sum_over(harmonics, std::cos(kTurn * fraction),
+                   [&](double n, const Harmonic& h) { return n * std::cos(angle_of(h, n, fraction)); }),
+          -sum_over(harmonics, std::sin(kTurn * fraction),
+                    [&](double n, const Harmonic& h) { return n * n * std::sin(angle_of(h, n, fraction)); })};
+}
+
+/// z = A w(theta) - (A - A_0) w(0) and its time derivatives.
+struct RampedPlate {
+  double z, v, a;
+};
+RampedPlate ramped(const Drive& drive, double fraction, std::int64_t cycle) {
+  const DriveRamp::State s = drive.ramp->state(static_cast<double>(cycle) + fraction);
+  const Waveform w = waveform(drive.harmonics, fraction), start = waveform(drive.harmonics, 0);
+  return {s.amplitude * w.w - (s.amplitude - drive.amplitude) * start.w,
+          s.amplitude * s.omega * w.slope + s.rate * (w.w - start.w),
+          s.amplitude * (s.omega * s.omega * w.bend + s.omega_rate * w.slope) +
+              2 * s.rate * s.omega * w.slope + s.curvature * (w.w - start.w)};
+}
+
+}  // namespace
+
 double Drive::displacement(double fraction, std::int64_t cycle) const {
   if (recorded) return recorded->at(cycle, fraction, period()).z;
+  if (ramp) return ramped(*this, fraction, cycle).z;
   return amplitude * sum_over(harmonics, std::sin(kTurn * fraction), [&](double n, const Harmonic& h) {
            return std::sin(angle_of(h, n, fraction));
          });
@@ -47,6 +78,7 @@ double Drive::displacement(double fraction, std::int64_t cycle) const {
 
 double Drive::velocity(double fraction, std::int64_t cycle) const {
   if (recorded) return recorded->at(cycle, fraction, period()).v;
+  if (ramp) return ramped(*this, fraction, cycle).v;
   return amplitude * omega *
          sum_over(harmonics, std::cos(kTurn * fraction),
                   [&](double n, const Harmonic& h) { return n * std::cos(angle_of(h, n, fraction)); });
@@ -54,30 +86,113 @@ double Drive::velocity(double fraction, std::int64_t cycle) const {
 
 double Drive::acceleration(double fraction, std::int64_t cycle) const {
   if (recorded) return recorded->at(cycle, fraction, period()).a;
+  if (ramp) return ramped(*this, fraction, cycle).a;
   return -omega * omega * amplitude *
          sum_over(harmonics, std::sin(kTurn * fraction),
                   [&](double n, const Harmonic& h) { return n * n * std::sin(angle_of(h, n, fraction)); });
 }
 
+double Drive::horizontal_displacement(double fraction) const {
+  return horizontal
+             ? horizontal->amplitude * std::sin(kTurn * (horizontal->ratio * fraction + horizontal->phase))
+             : 0;
+}
+
+double Drive::horizontal_velocity(double fraction) const {
+  return horizontal ? horizontal->amplitude * horizontal->ratio * omega *
+                          std::cos(kTurn * (horizontal->ratio * fraction + horizontal->phase))
+                    : 0;
+}
+
+Vec3 Drive::displacement_in_space(double fraction, std::int64_t cycle) const {
+  Vec3 r = displacement(fraction, cycle) * Vec3::Unit(static_cast<int>(axis));
+  if (horizontal) r.x() += horizontal_displacement(fraction);
+  return r;
+}
+
+Vec3 Drive::velocity_in_space(double fraction, std::int64_t cycle) const {
+  Vec3 v = velocity(fraction, cycle) * Vec3::Unit(static_cast<int>(axis));
+  if (horizontal) v.x() += horizontal_velocity(fraction);
+  return v;
+}
+
+Drive Drive::at(double cycles) const {
+  Drive now = *this;
+  if (!ramp) return now;
+  const DriveLevel level = ramp->level(cycles);
+  now.amplitude = level.amplitude;
+  now.omega = level.omega;
+  now.ramp.reset();
+  return now;
+}
+
+double Drive::cycles_at(double time) const {
+  return ramp ? ramp->cycles_at(time) : time / period();
+}
+
+double Drive::time_at(double cycles) const {
+  return ramp ? ramp->time_at(cycles) : cycles * period();
+}
+
 std::int64_t Drive::cycle_at(double time, double fraction) const {
   constexpr double kLargest = 1e15;  // beyond which a double has no fraction
-  const double cycles = time / period() - fraction;
-  return recorded && std::abs(cycles) < kLargest ? std::llround(cycles) : 0;
+  const double cycles = cycles_at(time) - fraction;
+  return (recorded || ramp) && std::abs(cycles) < kLargest ? std::llround(cycles) : 0;
 }
 
 double Drive::displacement_bound() const {
   if (recorded) return std::max(recorded->range().highest, -recorded->range().lowest);
-  return amplitude * sum_over(harmonics, 1, [](double, const Harmonic&) { return 1.0; });
+  const double waves = sum_over(harmonics, 1, [](double, const Harmonic&) { return 1.0; });
+  double bound = amplitude * waves;
+  if (ramp) {
+    const double most = std::max(amplitude, ramp->largest(0));
+    bound = most * waves + std::abs(waveform(harmonics, 0).w) * most;
+  }
+  return horizontal ? std::hypot(bound, horizontal->amplitude) : bound;
 }
 
 double Drive::velocity_bound() const {
   if (recorded) return recorded->range().speed;
-  return amplitude * omega * sum_over(harmonics, 1, [](double n, const Harmonic&) { return n; });
+  const double slopes = sum_over(harmonics, 1, [](double n, const Harmonic&) { return n; });
+  double bound = amplitude * omega * slopes;
+  if (ramp)
+    bound = std::max(amplitude * omega, ramp->largest(1)) * slopes +
+            2 * ramp->rate_bound() * sum_over(harmonics, 1, [](double, const Harmonic&) { return 1.0; });
+  return horizontal ? std::hypot(bound, horizontal->amplitude * horizontal->ratio * omega) : bound;
 }
 
+namespace {
+
+std::string formula_along_axis(const Drive& drive);
+
+}  // namespace
+
 std::string Drive::formula() const {
-  if (recorded) {
-    const RecordInfo& info = recorded->info();
+  std::string text = formula_along_axis(*this);
+  if (horizontal) {
+    fmt::format_to(std::back_inserter(text), ", x = {:.6g} sin({}omega t", horizontal->amplitude,
+                   horizontal->ratio == 1 ? "" : fmt::format("{} ", horizontal->ratio));
+    if (horizontal->phase != 0) fmt::format_to(std::back_inserter(text), " + 2 pi {:.4g}", horizontal->phase);
+    text += ')';
+  }
+  if (ramp) {
+    const auto change = [&](const char* name, double from, double to) {
+      if (from != to) fmt::format_to(std::back_inserter(text), ", {} from {:.6g} to {:.6g}", name, from, to);
+    };
+    change("A", ramp->from.amplitude, ramp->to.amplitude);
+    change("omega", ramp->from.omega, ramp->to.omega);
+    fmt::format_to(std::back_inserter(text), " {}in {:g} cycles", ramp->returns ? "and back " : "",
+                   ramp->cycles);
+  }
+  return text;
+}
+
+namespace {
+
+std::string formula_along_axis(const Drive& drive) {
+  const std::vector<Harmonic>& harmonics = drive.harmonics;
+  if (drive.recorded) {
+    const RecordInfo& info = drive.recorded->info();
     return fmt::format("recorded in {} (SHA-256 {}...){}", info.file, info.sha256.substr(0, 8),
                        info.cycles > 0 ? fmt::format(", {} cycles repeated", info.cycles) : "");
   }
@@ -93,17 +208,20 @@ std::string Drive::formula() const {
   return text + ')';
 }
 
+}  // namespace
+
 double Drive::peak_fall() const {
   if (recorded) return recorded->range().fall;
+  if (ramp) return at(0).peak_fall();
   if (harmonics.empty()) return amplitude * omega * omega;
   // Over a hundred samples per cycle of the highest harmonic; a parabola through the lowest and its
   // neighbours gives the minimum between them.
   constexpr int kSamples = 4096;
-  const auto at = [&](int k) { return acceleration(static_cast<double>(k) / kSamples); };
+  const auto fall_at = [&](int k) { return acceleration(static_cast<double>(k) / kSamples); };
   int lowest = 0;
   for (int k = 1; k < kSamples; ++k)
-    if (at(k) < at(lowest)) lowest = k;
-  const double before = at(lowest - 1), here = at(lowest), after = at(lowest + 1);
+    if (fall_at(k) < fall_at(lowest)) lowest = k;
+  const double before = fall_at(lowest - 1), here = fall_at(lowest), after = fall_at(lowest + 1);
   const double bend = before - 2 * here + after, slope = after - before;
   return -(bend > 0 ? here - slope * slope / (8 * bend) : here);
 }

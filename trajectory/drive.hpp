@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// The drive, a sine with optional harmonics or a recorded motion, and its dimensionless numbers.
+/// The drive, a sine with optional harmonics or a recorded motion, and its dimensionless numbers. A ramp may
+/// change it during the run, and it may have a horizontal component.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,6 +13,7 @@
 #include "core/config.hpp"
 #include "core/error.hpp"
 #include "trajectory/box.hpp"
+#include "trajectory/drive_ramp.hpp"
 
 namespace twincell {
 
@@ -27,6 +29,14 @@ struct Harmonic {
 inline constexpr std::size_t kMostHarmonics = 30;
 inline constexpr double kLargestHarmonic = 100;
 
+/// Motion of the plate along x beside that along z: x(t) = X sin(n omega t + 2 pi phi).
+struct HorizontalMotion {
+  double amplitude = 0;  ///< X, sigma
+  int ratio = 1;         ///< n, its frequency relative to that along z, 1 <= n <= kLargestRatio
+  double phase = 0;      ///< phi, cycles of this motion, 0 <= phi < 1
+};
+inline constexpr int kLargestRatio = 31;
+
 /// Plate displacement along `axis`, with zero mean:
 ///
 ///     z(t) = A (sin(omega t) + sum_n a_n sin(n omega t + 2 pi phi_n)),   n = 2, 3, ...
@@ -39,12 +49,22 @@ inline constexpr double kLargestHarmonic = 100;
 /// A recorded motion replaces the formula. A sin(omega t) is then its component at omega, by least squares,
 /// to which Gamma, K_m and V_p refer, and the cycles begin where this component passes its mean height
 /// upwards.
+///
+/// A ramp changes A and omega during the run; omega t is then the integral of omega, and
+///
+///     z(t) = A w(omega t) - (A - A_0) w(0)
+///
+/// with w the bracket above: the stroke changes about the position of phase 0, so that the velocity is
+/// continuous where the ramp begins, turns and ends. `amplitude` and `omega`, and all numbers that follow
+/// from them, are those before the ramp; at() gives those of another cycle.
 struct Drive {
   Axis axis = Axis::z;
   double amplitude = 0;                                 ///< A, sigma
   double omega = 1;                                     ///< omega, 1/t0
   std::vector<Harmonic> harmonics = {};                 ///< orders 2, 3, ...; empty: a sine
   std::shared_ptr<const RecordedMotion> recorded = {};  ///< null: the formula above
+  std::optional<DriveRamp> ramp = {};                   ///< \pre its `from` is {amplitude, omega}
+  std::optional<HorizontalMotion> horizontal = {};      ///< \pre axis is z
 
   /// Gamma = A omega^2 / g of the first harmonic or of the component at omega, with g in reduced units (1).
   [[nodiscard]] double gamma(double gravity = 1) const { return amplitude * omega * omega / gravity; }
@@ -58,30 +78,47 @@ struct Drive {
   [[nodiscard]] double period() const;
   /// Displacement at `fraction` of a period (0 <= fraction < 1), sigma. The argument is the fraction rather
   /// than the time, so that the plate is periodic to the last bit in a run of any length.
-  /// \param cycle number of whole periods before; only a recorded motion depends on it
+  /// \param cycle number of whole periods before; only a recorded motion and a ramp depend on it
   [[nodiscard]] double displacement(double fraction, std::int64_t cycle = 0) const;
   /// Velocity at `fraction` of a period, sigma/t0.
   [[nodiscard]] double velocity(double fraction, std::int64_t cycle = 0) const;
   /// Acceleration at `fraction` of a period, sigma/t0^2.
   [[nodiscard]] double acceleration(double fraction, std::int64_t cycle = 0) const;
+  /// Displacement and velocity of the plate in space, the horizontal motion included, sigma and sigma/t0.
+  [[nodiscard]] Vec3 displacement_in_space(double fraction, std::int64_t cycle = 0) const;
+  [[nodiscard]] Vec3 velocity_in_space(double fraction, std::int64_t cycle = 0) const;
+  /// Displacement and velocity along x of the horizontal motion; 0 without one.
+  [[nodiscard]] double horizontal_displacement(double fraction) const;
+  [[nodiscard]] double horizontal_velocity(double fraction) const;
+  /// The drive as it is `cycles` cycles after its start, without the ramp: its amplitude, omega and the
+  /// numbers that follow from them.
+  [[nodiscard]] Drive at(double cycles) const;
+  /// Cycles that are over at `time` since cycle 0 began, and the inverse.
+  [[nodiscard]] double cycles_at(double time) const;
+  [[nodiscard]] double time_at(double cycles) const;
   /// The cycle of a frame at `time` since cycle 0 began, whose phase is `fraction`; 0 without a recorded
-  /// motion, as no other drive depends on it.
+  /// motion and without a ramp, as no other drive depends on it.
   [[nodiscard]] std::int64_t cycle_at(double time, double fraction) const;
   /// Whether the plate moves.
-  [[nodiscard]] bool moves() const { return amplitude > 0 || recorded != nullptr; }
+  [[nodiscard]] bool moves() const {
+    return amplitude > 0 || recorded != nullptr || (ramp && ramp->to.amplitude > 0) ||
+           (horizontal && horizontal->amplitude > 0);
+  }
   /// A plate at rest at its mean position, with the same axis and period.
   [[nodiscard]] Drive at_rest() const { return {.axis = axis, .amplitude = 0, .omega = omega}; }
-  /// Upper bound of |displacement|, A (1 + sum a_n), sigma; A of a sine.
+  /// Upper bound of the length of the displacement in space, sigma: A (1 + sum a_n) of a vertical motion, A
+  /// of a sine.
   [[nodiscard]] double displacement_bound() const;
-  /// Upper bound of |velocity|, A omega (1 + sum n a_n), sigma/t0; A omega of a sine.
+  /// Upper bound of the speed in space, sigma/t0: A omega (1 + sum n a_n) of a vertical motion, A omega of a
+  /// sine.
   [[nodiscard]] double velocity_bound() const;
   /// Largest downward acceleration of the whole waveform, as a positive number, sigma/t0^2: A omega^2 of a
-  /// sine. A bead at rest on a horizontal plate leaves it if this exceeds g.
+  /// sine. A bead at rest on a horizontal plate leaves it if this exceeds g. Before a ramp.
   [[nodiscard]] double peak_fall() const;
   /// The formula of the displacement: "A sin(omega t)", or with harmonics for example
   /// "A (sin(omega t) + 0.1 sin(2 omega t + 2 pi 0.25))"; of a recorded motion its file and the first digits
   /// of the SHA-256, "recorded in trace.csv (SHA-256 1f2e3d4c...)", and of a repeated one the number of its
-  /// cycles.
+  /// cycles. A horizontal motion and a ramp follow after commas.
   [[nodiscard]] std::string formula() const;
 };
 

@@ -22,7 +22,7 @@ struct Spelling {
   double per_plain = 1;  ///< 2 for a diameter, which is two radii
 };
 
-constexpr const char* kIntruder = "beads.intruder";
+constexpr const char *kIntruder = "beads.intruder", *kRamp = "drive.ramp", *kHorizontal = "drive.horizontal";
 
 constexpr std::array kSpellings = {
     // The scale comes first, because the other keys are converted with it.
@@ -39,6 +39,18 @@ constexpr std::array kSpellings = {
     Spelling{"drive", "peak_velocity", "peak_velocity_mm_s", Unit::velocity_mm_s, Sign::not_negative},
     Spelling{"drive", "gamma", "peak_acceleration_g", Unit::one, Sign::not_negative},
     Spelling{"drive", "gamma", "peak_acceleration_m_s2", Unit::acceleration_m_s2, Sign::not_negative},
+    Spelling{kRamp, "amplitude", "amplitude_sigma", Unit::one, Sign::not_negative},
+    Spelling{kRamp, "amplitude", "amplitude_mm", Unit::length_mm, Sign::not_negative},
+    Spelling{kRamp, "frequency", "frequency_per_t0", Unit::one, Sign::positive},
+    Spelling{kRamp, "frequency", "frequency_hz", Unit::rate_per_s, Sign::positive},
+    Spelling{kRamp, "omega", "omega_per_t0", Unit::one, Sign::positive},
+    Spelling{kRamp, "omega", "omega_rad_s", Unit::rate_per_s, Sign::positive},
+    Spelling{kRamp, "peak_velocity", "peak_velocity_v0", Unit::one, Sign::not_negative},
+    Spelling{kRamp, "peak_velocity", "peak_velocity_mm_s", Unit::velocity_mm_s, Sign::not_negative},
+    Spelling{kRamp, "gamma", "peak_acceleration_g", Unit::one, Sign::not_negative},
+    Spelling{kRamp, "gamma", "peak_acceleration_m_s2", Unit::acceleration_m_s2, Sign::not_negative},
+    Spelling{kHorizontal, "amplitude", "amplitude_sigma", Unit::one, Sign::not_negative},
+    Spelling{kHorizontal, "amplitude", "amplitude_mm", Unit::length_mm, Sign::not_negative},
     Spelling{"cell", "width", "width_sigma", Unit::one, Sign::positive},
     Spelling{"cell", "width", "width_mm", Unit::length_mm, Sign::positive},
     Spelling{"cell", "height", "height_sigma", Unit::one, Sign::positive},
@@ -71,6 +83,11 @@ constexpr std::array kDimensional = {
     Dimensional{"drive", "cutoff", "cutoff_per_t0", "cutoff_hz"},
     Dimensional{"drive", "omega", "omega_per_t0", "omega_rad_s"},
     Dimensional{"drive", "peak_velocity", "peak_velocity_v0", "peak_velocity_mm_s"},
+    Dimensional{kRamp, "amplitude", "amplitude_sigma", "amplitude_mm"},
+    Dimensional{kRamp, "frequency", "frequency_per_t0", "frequency_hz"},
+    Dimensional{kRamp, "omega", "omega_per_t0", "omega_rad_s"},
+    Dimensional{kRamp, "peak_velocity", "peak_velocity_v0", "peak_velocity_mm_s"},
+    Dimensional{kHorizontal, "amplitude", "amplitude_sigma", "amplitude_mm"},
     Dimensional{"cell", "width", "width_sigma", "width_mm"},
     Dimensional{"cell", "height", "height_sigma", "height_mm"},
     Dimensional{"cell", "depth", "depth_sigma", "depth_mm"},
@@ -182,7 +199,10 @@ void reduce_units(Config& config) {
 
 void displace_spellings(Config& config, const std::string& assignment) {
   static const std::vector<std::vector<std::string>> groups = {
-      {"drive.omega", "drive.frequency"}, {"drive.gamma", "drive.k_m", "drive.peak_velocity"}};
+      {"drive.omega", "drive.frequency"},
+      {"drive.gamma", "drive.k_m", "drive.peak_velocity"},
+      {"drive.ramp.omega", "drive.ramp.frequency"},
+      {"drive.ramp.amplitude", "drive.ramp.gamma", "drive.ramp.k_m", "drive.ramp.peak_velocity"}};
   const std::string path = assignment.substr(0, assignment.find('='));
   std::string plain = path;
   for (const Spelling& s : kSpellings)

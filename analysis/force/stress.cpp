@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "analysis/force/branch_vector.hpp"
 #include "analysis/neighbours/bed_window.hpp"
 #include "analysis/observable/array_with_interval.hpp"
 
@@ -37,7 +38,7 @@ class Stress : public Observable {
                  plate = std::isfinite(frame.plate_height) ? frame.plate_height : info_.box.lower.z();
     Tensor contact = Tensor::Zero();
     for (const ContactForce& c : frame.contact_forces) {
-      const Vec3 branch = branch_of(c), force = c.force();
+      const Vec3 branch = branch_vector(c, info_), force = c.force();
       contact += force * branch.transpose();
       add_to_slabs(frame.position[static_cast<std::size_t>(c.i)].z() - plate, branch, force,
                    height / window.content);
@@ -112,14 +113,6 @@ class Stress : public Observable {
   }
 
  private:
-  [[nodiscard]] double radius(std::int32_t bead) const {
-    return info_.radius.empty() ? 0.5 : info_.radius[static_cast<std::size_t>(bead)];
-  }
-  /// From the centre of j, or from the wall, to the centre of i.
-  [[nodiscard]] Vec3 branch_of(const ContactForce& c) const {
-    return (radius(c.i) + (c.j >= 0 ? radius(c.j) : 0) - c.overlap) * c.normal;
-  }
-
   /// Adds f_a l_b of a branch that ends at height `top` to the slabs that it crosses, over the area and the
   /// thickness of a slab.
   void add_to_slabs(double top, const Vec3& branch, const Vec3& force, double per_area) {

@@ -198,10 +198,12 @@ class GranularTemperature : public Observable {
   }
 
   void add_scaled_by_drive(std::vector<Result>& all, double d_f) const {
-    const double v_p = info_.drive ? info_.drive->peak_velocity() : 0;
+    const double v_p = info_.drive && !info_.drive->ramp ? info_.drive->peak_velocity() : 0;
     if (!(v_p > 0)) {
-      for (const char* name : {"T_bar_z", "T_bar"})
-        all.push_back(absent_result(name, "the drive's V_p is not known or zero", kPaper2));
+      const char* const reason = info_.drive && info_.drive->ramp
+                                     ? "the drive changes during the run (drive.ramp)"
+                                     : "the drive's V_p is not known or zero";
+      for (const char* name : {"T_bar_z", "T_bar"}) all.push_back(absent_result(name, reason, kPaper2));
       return;
     }
     const double per = 1 / (v_p * v_p);

@@ -163,15 +163,20 @@ class BedFlight : public Observable {
       flight_.clear();
     }
     while (since_ && m.tick - *since_ >= info_.phases_per_cycle) {
-      share_.add(in_cycle_ / info_.drive->period());
+      share_.add(in_cycle_ / period_at(m.time));
       in_cycle_ = 0;
       *since_ += info_.phases_per_cycle;
     }
   }
 
+  /// Length of a cycle at `time`, t0.
+  [[nodiscard]] double period_at(double time) const {
+    return info_.drive->at(info_.drive->cycles_at(time)).period();
+  }
+
   /// Calls a function of Drive at `time`.
   [[nodiscard]] double plate(double (Drive::*function)(double, std::int64_t) const, double time) const {
-    const double turns = time / info_.drive->period(), whole = std::floor(turns);
+    const double turns = info_.drive->cycles_at(time), whole = std::floor(turns);
     return (*info_.drive.*function)(turns - whole, static_cast<std::int64_t>(whole));
   }
 

@@ -78,7 +78,8 @@ class CentreOfMass : public Observable {
  private:
   /// V_p^2/g in sigma; NaN if the drive is unknown or at rest.
   [[nodiscard]] double velocity_scale() const {
-    if (!info_.drive || info_.drive->peak_velocity() == 0) return std::numeric_limits<double>::quiet_NaN();
+    if (!info_.drive || info_.drive->ramp || info_.drive->peak_velocity() == 0)
+      return std::numeric_limits<double>::quiet_NaN();
     return info_.drive->peak_velocity() * info_.drive->peak_velocity();
   }
 
@@ -89,7 +90,11 @@ class CentreOfMass : public Observable {
       return absent_result(name, "the rest height is neither given nor measured: " + context_.no_rest_height,
                            kSource);
     const double rest = *context_.rest_height;
-    if (std::isnan(scale)) return absent_result(name, "the trajectory does not state its drive", kSource);
+    if (std::isnan(scale))
+      return absent_result(name,
+                           info_.drive && info_.drive->ramp ? "the drive changes during the run (drive.ramp)"
+                                                            : "the trajectory does not state its drive",
+                           kSource);
     Result r = h;
     r.name = name;
     r.unit = unit;
@@ -131,8 +136,7 @@ std::optional<double> resting_height(const TrajectoryInfo& info, const Frame& fr
   Vec3 of_plate = Vec3::Zero();
   if (info.drive && frame.phase >= 0 && info.phases_per_cycle > 0) {
     const double fraction = static_cast<double>(frame.phase) / info.phases_per_cycle;
-    of_plate[static_cast<int>(info.drive->axis)] =
-        info.drive->velocity(fraction, info.drive->cycle_at(frame.time, fraction));
+    of_plate = info.drive->velocity_in_space(fraction, info.drive->cycle_at(frame.time, fraction));
   }
   double riding = 0, still = 0, n = 0;
   for (std::size_t i = 0; i < frame.velocity.size(); ++i) {

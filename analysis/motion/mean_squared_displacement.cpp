@@ -1,10 +1,9 @@
 #include "analysis/motion/mean_squared_displacement.hpp"
 
 #include <cmath>
-#include <deque>
-#include <limits>
 #include <numeric>
 
+#include "analysis/motion/lagged_vectors.hpp"
 #include "analysis/observable/array_with_interval.hpp"
 #include "analysis/statistics/ratio_average.hpp"
 
@@ -16,21 +15,16 @@ const char* const kSource = "Allen & Tildesley, Computer Simulation of Liquids, 
 
 class MeanSquaredDisplacement : public Observable {
  public:
-  explicit MeanSquaredDisplacement(const AnalysisContext& context) : info_(context.info), msd_(kLongestLag) {}
+  explicit MeanSquaredDisplacement(const AnalysisContext& context)
+      : info_(context.info), past_(kLongestLag), msd_(kLongestLag) {}
 
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
     if (frame.phase != 0 || frame.cycle < 0) return;
-    std::vector<Vec3> now = frame.position;
-    for (std::size_t i = 0; i < now.size(); ++i)
-      if (!frame.present(i)) now[i].setConstant(std::numeric_limits<double>::quiet_NaN());
-    for (const auto& [cycle, before] : past_) {
-      const std::int64_t lag = frame.cycle - cycle;
-      if (lag < 1 || lag > static_cast<std::int64_t>(kLongestLag)) continue;
-      add_pair(before, now, static_cast<std::size_t>(lag - 1));
-    }
-    past_.push_back({frame.cycle, std::move(now)});
-    if (past_.size() > kLongestLag) past_.pop_front();
+    past_.add(static_cast<double>(frame.cycle), of_present(frame, frame.position, info_.box), 1,
+              [&](std::size_t lag, const std::vector<Vec3>& before, const std::vector<Vec3>& now) {
+                if (lag > 0) add_pair(before, now, lag - 1);
+              });
   }
 
   [[nodiscard]] std::vector<Result> results() const override {
@@ -58,11 +52,7 @@ class MeanSquaredDisplacement : public Observable {
   void add_pair(const std::vector<Vec3>& before, const std::vector<Vec3>& now, std::size_t m) {
     Vec3 drift = Vec3::Zero();
     std::size_t n = 0;
-    const auto step = [&](std::size_t i) {
-      Vec3 d = now[i] - before[i];
-      if (info_.box.dimension == 2) d.y() = 0;
-      return d;
-    };
+    const auto step = [&](std::size_t i) { return Vec3(now[i] - before[i]); };
     for (std::size_t i = 0; i < now.size(); ++i)
       if (const Vec3 d = step(i); d.allFinite()) {
         drift += d;
@@ -77,12 +67,8 @@ class MeanSquaredDisplacement : public Observable {
     msd_[m].add(sum / (beads - 1) * beads, beads);  // n - 1: the drift is estimated
   }
 
-  struct Past {
-    std::int64_t cycle;
-    std::vector<Vec3> position;
-  };
   const TrajectoryInfo& info_;
-  std::deque<Past> past_;
+  LaggedVectors past_;  ///< positions by cycle
   std::vector<RatioAverage> msd_;
 };
 

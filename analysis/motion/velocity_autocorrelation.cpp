@@ -1,9 +1,6 @@
 #include "analysis/motion/velocity_autocorrelation.hpp"
 
-#include <cmath>
-#include <deque>
-#include <limits>
-
+#include "analysis/motion/lagged_vectors.hpp"
 #include "analysis/observable/array_with_interval.hpp"
 #include "analysis/statistics/ratio_average.hpp"
 
@@ -16,22 +13,18 @@ const char* const kSource = "Allen & Tildesley, Computer Simulation of Liquids, 
 class VelocityAutocorrelation : public Observable {
  public:
   explicit VelocityAutocorrelation(const AnalysisContext& context)
-      : info_(context.info), c_(kLongestVelocityLag + 1) {}
+      : info_(context.info), past_(kLongestVelocityLag), c_(kLongestVelocityLag + 1) {}
 
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
     if (frame.velocity.empty()) return;
     std::vector<Vec3> now = fluctuations(frame);
     if (now.empty()) return;
-    if (!past_.empty() && !(interval_ > 0)) interval_ = frame.time - past_.back().time;
-    past_.push_back({frame.time, std::move(now)});
-    for (const auto& [time, before] : past_) {
-      const double lag = interval_ > 0 ? (frame.time - time) / interval_ : 0, whole = std::round(lag);
-      constexpr double kJitter = 0.1;  // of a lag that still counts
-      if (whole > kLongestVelocityLag || std::abs(lag - whole) > kJitter) continue;
-      add_pair(before, past_.back().velocity, static_cast<std::size_t>(whole));
-    }
-    if (past_.size() > kLongestVelocityLag) past_.pop_front();
+    if (!past_.empty() && !(interval_ > 0)) interval_ = frame.time - past_.last();
+    past_.add(frame.time, std::move(now), interval_,
+              [&](std::size_t lag, const std::vector<Vec3>& before, const std::vector<Vec3>& after) {
+                add_pair(before, after, lag);
+              });
   }
 
   [[nodiscard]] std::vector<Result> results() const override {
@@ -56,14 +49,12 @@ class VelocityAutocorrelation : public Observable {
  private:
   /// Velocities relative to their mean; NaN where unknown; empty if fewer than two are known.
   [[nodiscard]] std::vector<Vec3> fluctuations(const Frame& frame) const {
-    std::vector<Vec3> v = frame.velocity;
+    std::vector<Vec3> v = of_present(frame, frame.velocity, info_.box);
     Vec3 sum = Vec3::Zero();
     double n = 0;
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      if (info_.box.dimension == 2) v[i].y() = 0;
-      if (!frame.present(i)) v[i].setConstant(std::numeric_limits<double>::quiet_NaN());
-      if (!v[i].allFinite()) continue;
-      sum += v[i];
+    for (const Vec3& each : v) {
+      if (!each.allFinite()) continue;
+      sum += each;
       ++n;
     }
     if (n < 2) return {};
@@ -81,13 +72,9 @@ class VelocityAutocorrelation : public Observable {
     if (squares > 0) c_[lag].add(product, squares);
   }
 
-  struct Past {
-    double time;
-    std::vector<Vec3> velocity;
-  };
   const TrajectoryInfo& info_;
   double interval_ = 0;  ///< time between the first two frames, t0
-  std::deque<Past> past_;
+  LaggedVectors past_;   ///< velocities by time
   std::vector<RatioAverage> c_;
 };
 

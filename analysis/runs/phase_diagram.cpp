@@ -37,6 +37,11 @@ Run analyze_run(const TrajectorySource& trajectory, Side side, const AnalysisOpt
   if (!info.drive)
     throw InputError({.file = trajectory.name(), .key = "drive"},
                      "the trajectory does not state its drive, so that it has no Gamma");
+  if (info.drive->ramp)
+    throw InputError(
+        {.file = trajectory.name(), .key = "drive.ramp"},
+        "the drive of the run changes, so that the run has no one Gamma; `analyze --window-cycles` gives "
+        "its results for windows of cycles");
   Run run;
   run.side = side;
   run.start = info.conditions.start;

@@ -139,7 +139,8 @@ BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info) {
     none.not_comparable = std::move(why);
     return none;
   };
-  if (!info.drive->harmonics.empty() || info.drive->recorded) return because("the drive is not a sine");
+  if (!info.drive->harmonics.empty() || info.drive->recorded || info.drive->ramp)
+    return because("the drive is not a sine");
   if (info.phases_per_cycle == 0) return because("the frames have no fixed phases");
   if (bed.steps().empty())
     return because(

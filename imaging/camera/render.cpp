@@ -49,6 +49,19 @@ void check_trigger(const TrajectorySource& trajectory, const CameraOptions& opti
             most, second.time - first.time));
 }
 
+/// The files of a film state one drive, and its side walls do not move.
+void check_drive(const TrajectorySource& trajectory) {
+  const std::optional<Drive>& drive = trajectory.info().drive;
+  if (drive && drive->ramp)
+    throw ConfigError(Where{.file = trajectory.name(), .key = "drive.ramp"},
+                      "the drive changes during the run, but a film and its CELL.toml have one drive; `draw` "
+                      "draws such a run.");
+  if (drive && drive->horizontal)
+    throw ConfigError(
+        Where{.file = trajectory.name(), .key = "drive.horizontal"},
+        "the cell also moves along x, but the walls of a film do not; `draw` draws such a run.");
+}
+
 std::string cell_text(const SyntheticCamera& camera, const TrajectoryInfo& info, const CameraOptions& options,
                       int first_phase) {
   const PixelFrame& map = camera.pixel_frame();
@@ -185,6 +198,7 @@ Rendered render(const TrajectorySource& trajectory, const CameraOptions& options
   options.check();
   CameraOptions fitted = options.reduced(info.scale);
   check_trigger(trajectory, fitted);
+  check_drive(trajectory);
   if (fitted.max_height == 0) fitted.max_height = height_of_beads(trajectory, progress);
   const Filming filming(trajectory, fitted);
 

@@ -24,7 +24,9 @@ constexpr double kWidestLine = 0.4;  // sigma
 const cv::Scalar kInk(40, 40, 40), kWall(60, 60, 60), kPeriodic(205, 205, 205), kTrack(120, 120, 120),
     kArrow(40, 40, 200), kChain(30, 30, 30), kRim(235, 235, 235);
 
-std::vector<std::size_t> chosen(const TrajectorySource& source, const FrameRange& range) {
+}  // namespace
+
+std::vector<std::size_t> indices_of(const TrajectorySource& source, const FrameRange& range) {
   const auto n = static_cast<std::int64_t>(source.n_frames());
   const std::int64_t end = range.end < 0 ? n : std::min(range.end, n);
   std::vector<std::size_t> indices;
@@ -37,8 +39,10 @@ std::vector<std::size_t> chosen(const TrajectorySource& source, const FrameRange
   return indices;
 }
 
+namespace {
+
 std::vector<std::size_t> drawn_frames(const TrajectorySource& source, const DrawJob& job) {
-  std::vector<std::size_t> indices = chosen(source, job.frames);
+  std::vector<std::size_t> indices = indices_of(source, job.frames);
   if (!job.film()) indices = {indices.back()};
   return indices;
 }
@@ -57,11 +61,20 @@ double plate_of(const Frame& frame, const TrajectoryInfo& info) {
   return std::isfinite(frame.plate_height) && !sideways_axis(info) ? frame.plate_height : info.box.lower.z();
 }
 
+/// Drive cycles that are over in a frame.
+double cycles_of(const Frame& frame, const TrajectoryInfo& info) {
+  return info.drive->cycles_at(frame.time);
+}
+
 /// Horizontal displacement of the cell; Frame::plate_height is along the axis of the drive.
 Vec3 shift_of(const Frame& frame, const TrajectoryInfo& info) {
   Vec3 shift = Vec3::Zero();
   if (const auto axis = sideways_axis(info); axis && std::isfinite(frame.plate_height))
     shift[*axis] = frame.plate_height;
+  if (info.drive && info.drive->horizontal && !info.box.periodic(Axis::x)) {
+    const double cycles = cycles_of(frame, info);
+    shift.x() += info.drive->horizontal_displacement(cycles - std::floor(cycles));
+  }
   return shift;
 }
 
@@ -291,19 +304,9 @@ class Painter {
   void draw_texts(cv::Mat3b& picture) const {
     const cv::Rect cell = view_.cell();
     constexpr int kAbove = 14;
-    draw_label(picture, title(), {cell.x, cell.y - kAbove}, kInk);
+    draw_label(picture, frame_title(frame_, info_), {cell.x, cell.y - kAbove}, kInk);
     draw_scale_bar(picture);
     if (job_.colours.of) draw_colour_bar(picture);
-  }
-
-  [[nodiscard]] std::string title() const {
-    std::string text = frame_.cycle >= 0             ? fmt::format("cycle {}", frame_.cycle)
-                       : time_is_frame_number(info_) ? fmt::format("frame {:g}", frame_.time)
-                                                     : fmt::format("t = {:.4g} t0", frame_.time);
-    if (frame_.phase >= 0 && info_.phases_per_cycle > 0)
-      text += fmt::format("   phase {}/{}", frame_.phase, info_.phases_per_cycle);
-    if (info_.conditions.gamma) text += fmt::format("   Gamma {:.4g}", *info_.conditions.gamma);
-    return text;
   }
 
   void draw_scale_bar(cv::Mat3b& picture) const {
@@ -357,14 +360,21 @@ void check(const TrajectorySource& source, const DrawJob& job) {
   if (kind != ".png" && kind != ".mp4" && kind != ".avi")
     throw ConfigError(
         Where{.file = {}, .key = "--output"},
-        fmt::format("is '{}'; a picture is written as .png, a film as .mp4 or .avi.", job.output.string()));
+        fmt::format("is '{}'; a picture is written as .png, a film as .mp4 or .avi, a page as .html.",
+                    job.output.string()));
   if (job.vectors && !info.columns.velocity)
     refuse("--vectors", "needs velocities, which this trajectory does not have.");
   if (job.contacts && !info.columns.contact_forces)
     refuse("--contacts", "needs contacts (simulate --contacts), which this trajectory does not have.");
-  if (!job.colours.range) return;
-  const auto [low, high] = *job.colours.range;
-  if (!job.colours.of)
+  check_colours(job.colours);
+}
+
+}  // namespace
+
+void check_colours(const BeadColours& colours) {
+  if (!colours.range) return;
+  const auto [low, high] = *colours.range;
+  if (!colours.of)
     throw ConfigError(Where{.file = {}, .key = "--colour-range"},
                       "applies to a number; choose one by --colour.");
   if (!std::isfinite(low) || !std::isfinite(high) || low >= high)
@@ -372,7 +382,23 @@ void check(const TrajectorySource& source, const DrawJob& job) {
                       fmt::format("is {:g} to {:g}, but must be a number and a larger one.", low, high));
 }
 
-}  // namespace
+std::string frame_title(const Frame& frame, const TrajectoryInfo& info) {
+  std::string text = frame.cycle >= 0             ? fmt::format("cycle {}", frame.cycle)
+                     : time_is_frame_number(info) ? fmt::format("frame {:g}", frame.time)
+                                                  : fmt::format("t = {:.4g} t0", frame.time);
+  if (frame.phase >= 0 && info.phases_per_cycle > 0)
+    text += fmt::format("   phase {}/{}", frame.phase, info.phases_per_cycle);
+  if (info.conditions.gamma) text += fmt::format("   Gamma {:.4g}", *info.conditions.gamma);
+  if (info.drive && info.drive->ramp)
+    text += fmt::format("   Gamma {:.4g}", info.drive->at(cycles_of(frame, info)).gamma());
+  return text;
+}
+
+Vec3 cell_displacement(const Frame& frame, const TrajectoryInfo& info) {
+  Vec3 displacement = shift_of(frame, info);
+  displacement.z() = plate_of(frame, info);
+  return displacement;
+}
 
 cv::Vec3b map_colour(double value, const std::array<double, 2>& range) {
   static const cv::Mat3b map = [] {

@@ -51,8 +51,21 @@ struct Drawn {
 /// Colour of `value` in the map viridis between the ends of `range`, BGR; grey for NaN.
 cv::Vec3b map_colour(double value, const std::array<double, 2>& range);
 
+/// Numbers of the chosen frames, in order. \throws ConfigError if the trajectory lacks them
+std::vector<std::size_t> indices_of(const TrajectorySource& source, const FrameRange& range);
+
+/// Cycle, phase and Gamma of a frame, or its time, as a title.
+std::string frame_title(const Frame& frame, const TrajectoryInfo& info);
+
+/// Displacement of the cell in a frame along x and y, and the height of its plate, sigma. A cell that is
+/// periodic along x does not move along it.
+Vec3 cell_displacement(const Frame& frame, const TrajectoryInfo& info);
+
 /// Projection of the chosen frames: from the lowest plate to one sigma above the highest bead.
 View view_of(const TrajectorySource& source, const DrawJob& job);
+
+/// \throws ConfigError for a range of colours without a number, or whose ends are not two increasing numbers
+void check_colours(const BeadColours& colours);
 
 /// Draws the frames and writes the picture or the film, complete or not at all.
 /// \throws ConfigError for another extension, frames that the trajectory lacks, or data that it lacks;

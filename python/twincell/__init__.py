@@ -7,7 +7,7 @@ from . import _core
 from . import _results, _scenes, _tables  # noqa: F401  (they add methods to the classes of _core)
 from ._core import (
     Box, ConfigError, Drive, Error, InputError, Interrupted, Result, Results, RunError, Scene, Simulation, Trajectory,
-    __version__, analyze, bond_order, coordination, fit, hexatic_order, laws, neighbours, preset_names,
+    Window, __version__, analyze, analyze_windows, bond_order, coordination, fit, hexatic_order, laws, neighbours, preset_names,
     result_names, sweep, track, version, voronoi)
 from ._frames import Frames, open_frames
 from ._locating import locate
@@ -19,7 +19,7 @@ from ._scenes import simulate
 
 __all__ = [
     "Box", "ConfigError", "Drive", "Error", "Frames", "InputError", "Interrupted", "Result", "Results", "RunError",
-    "Scene", "Simulation", "Trajectory", "__version__", "analyze", "bond_order", "calibrate_beads",
+    "Scene", "Simulation", "Trajectory", "Window", "__version__", "analyze", "analyze_windows", "bond_order", "calibrate_beads",
     "calibrate_camera", "calibrate_contacts_bounce", "calibrate_contacts_collisions", "calibrate_contacts_infer",
     "calibrate_contacts_numbers", "calibrate_plate", "calibrate_walls", "compare", "coordination", "draw", "export", "fit",
     "hexatic_order", "import_", "laws", "locate", "match", "neighbours", "open_frames", "preset_names", "render", "reproduce",

@@ -149,9 +149,9 @@ class Picture(bytes):
 
 
 def draw(trajectory, *, output=None, callback=None, **options):
-    """A trajectory as a picture or a film, without a camera: `twincell draw` (docs/drawing.md).
+    """A trajectory as a picture, a film or a page that plays it, without a camera: `twincell draw` (docs/drawing.md).
 
-    trajectory: Trajectory or H5MD file; output: .png, .mp4 or .avi; colour="speed", tracks=5, vectors=True, contacts=True.
+    trajectory: Trajectory or H5MD file; output: .png, .mp4, .avi or .html; colour="speed", tracks=5, vectors=True, contacts=True.
     Without output, the picture of the last frame is returned, which a notebook shows. Otherwise as `match`.
     """
     if output is not None:

@@ -277,8 +277,7 @@ std::vector<Impact> impacts_of_a_bed(double gamma, int count) {
     }
     before = std::move(now);
     beads = system.beads;
-    plate_velocity = Vec3::Zero();
-    plate_velocity[static_cast<Eigen::Index>(system.drive.axis)] = system.plate_velocity();
+    plate_velocity = system.plate_velocity_in_space();
     kernel->advance(system, kLook);
   }
   if (all.empty()) throw RunError("the bed has no impacts.");

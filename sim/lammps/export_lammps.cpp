@@ -177,6 +177,8 @@ Model model_of(const Scene& scene, const Plan& plan) {
   if (scene.drive.recorded) refuse(scene, "drive.file", "LAMMPS's walls move as a sine, not as a record.");
   if (!scene.drive.harmonics.empty())
     refuse(scene, "drive.harmonics", "LAMMPS's walls move as a sine, without harmonics.");
+  if (scene.drive.ramp) refuse(scene, "drive.ramp", "LAMMPS's walls move as a sine that does not change.");
+  if (scene.drive.horizontal) refuse(scene, "drive.horizontal", "LAMMPS's walls move along one axis.");
   if (scene.plate_drag > 0) refuse(scene, "cell.plate_drag", "LAMMPS has no drag against a moving cell.");
   if (scene.spread != SizeSpread::none || scene.intruder) refuse_unlike_masses(scene, plan);
   Model m;

@@ -59,9 +59,7 @@ class Evaluation {
     std::vector<double> memory = memory_of({i, -1 - w});
     const std::int32_t record = i * record_;
     const auto normal = components(wall.n);
-    const Vec3 plate = wall.moves
-                           ? Vec3(system_.plate_velocity() * Vec3::Unit(static_cast<int>(system_.drive.axis)))
-                           : Vec3(Vec3::Zero());
+    const Vec3 plate = wall.moves ? system_.plate_velocity_in_space() : Vec3::Zero();
     const auto velocity = components(plate);
     WallArgs g{};
     g.records = beads_.records(), g.spins = beads_.spins(), g.forces = beads_.forces();

@@ -61,7 +61,7 @@ std::vector<ContactMemory> readable(const Scene& scene, const Plan& plan,
 
 /// Largest relative speed of a moving wall and a bead that touches it.
 double largest_kick(const System& s) {
-  const Vec3 plate = s.plate_velocity() * Vec3::Unit(static_cast<int>(s.drive.axis));
+  const Vec3 plate = s.plate_velocity_in_space();
   double kick = 0;
   for (const Wall& wall : s.walls)
     for (const Bead& b : s.beads)
@@ -92,9 +92,7 @@ RunState placed(const Scene& scene, Progress& progress) {
   require_memory(scene, plan, scene.n_beads.value_or(0));
   Start start = make_start(scene, progress);
   const double phase = start.phase.value_or(scene.phase.value_or(0));
-  const Vec3 plate =
-      scene.in_motion ? Vec3(scene.drive.displacement(phase) * Vec3::Unit(static_cast<int>(scene.drive.axis)))
-                      : Vec3(Vec3::Zero());
+  const Vec3 plate = scene.in_motion ? scene.drive.displacement_in_space(phase) : Vec3::Zero();
   require_sound(start.beads, scene, 0.05, progress, plate);
   RunState state;
   // High enough never to be reached: top of the bed, stroke of the plate, twice the ballistic height at the
@@ -131,12 +129,8 @@ void begin_drive(const Scene& scene, const Plan& plan, System& system) {
   // At phase 0 a sine moves at A omega but does not accelerate: beads that move with it are in
   // equilibrium. Beads at rest would be hit by a plate at full speed, which alone breaks a crystal.
   if (!scene.comoving) return;
-  const double v = system.plate_velocity();
-  for (Bead& b : system.beads) {
-    if (scene.drive.axis == Axis::x) b.vx += v;
-    if (scene.drive.axis == Axis::y) b.vy += v;
-    if (scene.drive.axis == Axis::z) b.vz += v;
-  }
+  const Vec3 v = system.plate_velocity_in_space();
+  for (Bead& b : system.beads) b.vx += v.x(), b.vy += v.y(), b.vz += v.z();
 }
 
 Simulation::Simulation(Scene scene, RunState state, SolverKind kind, int threads)
@@ -311,24 +305,45 @@ Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
     }
   }
   if (scene_.contacts) frame.contact_forces = contact_forces(plan_, system_, kernel_->contacts());
-  if (temperature_.steps == steps_per_phase()) {
+  const std::int64_t index = frame_at(system_.step);
+  if (index > 0 && temperature_.steps == step_of(index) - step_of(index - 1)) {
     const auto steps = static_cast<double>(temperature_.steps);
     frame.time_mean = {temperature_.all / steps, temperature_.coarse / steps};
   }
   return frame;
 }
 
+std::int64_t Simulation::step_of(std::int64_t frame) const {
+  if (!system_.changes_frequency()) return frame * (plan_.steps_per_period / scene_.phases);
+  return system_.step_at(static_cast<double>(frame) / scene_.phases);
+}
+
+std::int64_t Simulation::frame_at(std::int64_t step) const {
+  if (!system_.changes_frequency()) return step / (plan_.steps_per_period / scene_.phases);
+  const double cycles = system_.drive.cycles_at(static_cast<double>(step) * system_.dt);
+  auto frame = static_cast<std::int64_t>(cycles * scene_.phases);
+  while (step_of(frame + 1) <= step) ++frame;
+  while (frame > 0 && step_of(frame) > step) --frame;
+  return frame;
+}
+
 std::int64_t Simulation::samples_per_phase() const {
   constexpr int kOfABedThatLands = 400;
   const int samples = scene_.samples.value_or(plan_.event_driven ? 2 * scene_.phases : kOfABedThatLands);
-  if (samples == 0 || steps_per_phase() < 2) return 0;
+  // The shortest interval between frames, which is that of the highest frequency.
+  std::int64_t shortest = plan_.steps_per_period / scene_.phases;
+  if (scene_.drive.ramp && scene_.drive.ramp->to.omega > scene_.drive.omega)
+    shortest = static_cast<std::int64_t>(static_cast<double>(shortest) * scene_.drive.omega /
+                                         scene_.drive.ramp->to.omega) -
+               1;
+  if (samples == 0 || shortest < 2) return 0;
   const std::int64_t pairs = (samples + 2 * scene_.phases - 1) / (2 * scene_.phases);
-  return 2 * std::min(pairs, steps_per_phase() / 2);
+  return 2 * std::min(pairs, shortest / 2);
 }
 
-std::int64_t Simulation::sample_at(std::int64_t j) const {
+std::int64_t Simulation::sample_at(std::int64_t j, std::int64_t interval) const {
   const std::int64_t samples = samples_per_phase();
-  return (j * steps_per_phase() + samples - 1) / samples;
+  return (j * interval + samples - 1) / samples;
 }
 
 void Simulation::advance(std::int64_t steps, StageTimes* times, std::string_view stage) {
@@ -340,24 +355,25 @@ void Simulation::advance(std::int64_t steps, StageTimes* times, std::string_view
                  kernel_->counters().bytes - before);
 }
 
-void Simulation::take_sample(std::int64_t j) {
+void Simulation::take_sample(std::int64_t j, std::int64_t interval) {
   sampled_.velocity.clear();
   for (const Bead& b : system_.beads) sampled_.velocity.emplace_back(b.vx, b.vy, b.vz);
   const Vec3 t = temperature_components(sampled_, masses_);
-  temperature_.all += static_cast<double>(sample_at(j) - sample_at(j - 1)) * t;
-  if (j % 2 == 0) temperature_.coarse += static_cast<double>(sample_at(j) - sample_at(j - 2)) * t;
-  temperature_.steps += sample_at(j) - sample_at(j - 1);
+  const std::int64_t at = sample_at(j, interval), before = sample_at(j - 1, interval);
+  temperature_.all += static_cast<double>(at - before) * t;
+  if (j % 2 == 0) temperature_.coarse += static_cast<double>(at - sample_at(j - 2, interval)) * t;
+  temperature_.steps += at - before;
 }
 
 void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most, StageTimes* times) {
   settle(progress, times);
   if (!driven_) begin_drive(scene_, plan_, system_);
   driven_ = true;
-  const std::int64_t per_phase = steps_per_phase(), samples = samples_per_phase();
-  const std::int64_t last = plan_.steps;
+  const std::int64_t samples = samples_per_phase(), last = plan_.steps;
   std::int64_t handed_over = 0;
   while (system_.step < last) {
-    const std::int64_t frame = system_.step / per_phase, into = system_.step % per_phase;
+    const std::int64_t frame = frame_at(system_.step), into = system_.step - step_of(frame);
+    const std::int64_t interval = step_of(frame + 1) - step_of(frame);
     const std::int64_t cycle = frame / scene_.phases - plan_.cycles_before;
     if (into == 0 && cycle >= 0) {
       if (handed_over == most) return;
@@ -376,15 +392,15 @@ void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most
       looked_at_ += static_cast<std::int64_t>(system_.beads.size());
     }
     if (into == 0) temperature_ = {};
-    std::int64_t piece = std::min(per_phase - into, steps_per_call(system_.beads.size()));
+    std::int64_t piece = std::min(interval - into, steps_per_call(system_.beads.size()));
     // Samples are taken only in the interval before a frame that is written.
     const bool sampling = samples > 0 && (frame + 1) / scene_.phases >= plan_.cycles_before;
-    const std::int64_t next = sampling ? into * samples / per_phase + 1 : 0;
-    if (sampling) piece = std::min(piece, sample_at(next) - into);
+    const std::int64_t next = sampling ? into * samples / interval + 1 : 0;
+    if (sampling) piece = std::min(piece, sample_at(next, interval) - into);
     advance(piece, times, "stepping");
-    if (sampling && into + piece == sample_at(next)) {
+    if (sampling && into + piece == sample_at(next, interval)) {
       Stage sample(times, "samples", "samples");
-      take_sample(next);
+      take_sample(next, interval);
       sample.count(1);
     }
     steps_done_ += piece;

@@ -116,12 +116,16 @@ class Simulation {
  private:
   void advance(std::int64_t steps, StageTimes* times, std::string_view stage);
   [[nodiscard]] Frame snapshot(std::int64_t cycle, int phase) const;
-  /// Steps between frames. samples_per_phase(): samples between frames, an even number or 0.
-  [[nodiscard]] std::int64_t steps_per_phase() const { return plan_.steps_per_period / scene_.phases; }
+  /// The step of frame k, counted from phase 0 of the drive, and the last frame at or before a step. If the
+  /// frequency changes, the step is the one nearest to the phase of the frame.
+  [[nodiscard]] std::int64_t step_of(std::int64_t frame) const;
+  [[nodiscard]] std::int64_t frame_at(std::int64_t step) const;
+  /// Samples between frames, an even number or 0.
   [[nodiscard]] std::int64_t samples_per_phase() const;
-  /// Whole steps from a frame to sample j = 0 .. samples_per_phase() after it.
-  [[nodiscard]] std::int64_t sample_at(std::int64_t j) const;
-  void take_sample(std::int64_t j);
+  /// Whole steps from a frame to sample j = 0 .. samples_per_phase() after it. \param interval to the next
+  /// frame, steps
+  [[nodiscard]] std::int64_t sample_at(std::int64_t j, std::int64_t interval) const;
+  void take_sample(std::int64_t j, std::int64_t interval);
 
   Scene scene_;
   Plan plan_;

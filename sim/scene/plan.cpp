@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "sim/kernels/kernels.hpp"
+#include "sim/scene/drive_tables.hpp"
 #include "sim/scene/recorded_drive.hpp"
 
 namespace twincell::sim {
@@ -224,6 +225,8 @@ std::string why_not_event_driven(const Scene& scene, const Plan& plan) {
   if (!scene.envelope.points.empty()) return "the drive's amplitude changes";
   if (!scene.drive.harmonics.empty()) return "the drive has harmonics";
   if (scene.drive.recorded) return "the drive is recorded";
+  if (scene.drive.ramp) return "the drive changes during the run (drive.ramp)";
+  if (scene.drive.horizontal) return "the plate also moves along x (drive.horizontal)";
   return "";
 }
 
@@ -281,6 +284,17 @@ void refuse_to_drop(const Scene& s, const Plan& plan) {
         fmt::format("is false, but contact.tangential = \"{}\" with {} is a spring with history; "
                     "choose \"dashpot\" for a law without history.",
                     s.contact.tangential, stiffness_text(s.contact)));
+}
+
+/// A wall acts on beads along x by its normal or by friction.
+void refuse_void_horizontal(const Scene& s, const Plan& plan) {
+  if (!s.drive.horizontal) return;
+  const bool friction = std::visit([](const auto& law) { return law.kActs; }, plan.bead.tangential);
+  for (const Wall& wall : plan.walls)
+    if (wall.moves && (wall.n.x() != 0 || (friction && mu_of(s.contact.wall.at(wall.name)) > 0))) return;
+  throw ConfigError(
+      s.where("drive.horizontal"),
+      "moves no bead: of the walls that ride with the plate none is a side wall, and none has friction.");
 }
 
 /// Adds a limit, or keeps the shorter of two limits with the same name.
@@ -401,6 +415,7 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
   plan.history = std::visit([](const auto& law) { return law.kHistory; }, plan.bead.tangential);
 
   refuse_to_drop(s, plan);
+  refuse_void_horizontal(s, plan);
 
   // Sizes: only beads from a file can differ from those that the scene states.
   const bool from_file = start_row(s.start).from_file;
@@ -433,7 +448,12 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
   }
   if (s.plate_drag > 0) plan.limits.push_back({"plate drag", 1 / s.plate_drag});
   constexpr double kMostSteps = 1e10, kShortestStep = 1e-12;
-  const double steps = s.drive.period() / (plan.shortest().time / s.steps_per_contact);
+  double steps = s.drive.period() / (plan.shortest().time / s.steps_per_contact);
+  // While the frequency changes, a frame is at the step nearest to its phase.
+  constexpr double kFinePhases = 1000;  // steps of the shortest cycle
+  if (s.drive.ramp)
+    if (const DriveRamp& ramp = *s.drive.ramp; ramp.changes_frequency())
+      steps = std::max({steps, kFinePhases * ramp.to.omega / ramp.from.omega, kFinePhases});
   if (!(steps <= kMostSteps))
     throw ConfigError(
         s.where("drive"),
@@ -456,8 +476,10 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
                                   "time.steps_per_contact or contact.k_n.",
                                   travel, plan.travel_bound));
   // Number of cycles: a schedule of the amplitude precedes the cycles that are discarded.
-  plan.cycles_before = static_cast<std::int64_t>(std::ceil(s.envelope.duration())) + s.discard;
+  plan.cycles_before = cycles_before(s.envelope, s.discard);
   plan.steps = (plan.cycles_before + s.cycles) * plan.steps_per_period;
+  if (s.drive.ramp && s.drive.ramp->changes_frequency())
+    plan.steps = std::llround(s.drive.time_at(static_cast<double>(plan.cycles_before + s.cycles)) / plan.dt);
   require_record_lasts(s.drive, plan.cycles_before + s.cycles, s.where("drive.file"));
   list_effects(s, chosen, plan);
   choose_stepping(s, beads.empty() ? s.n_beads.value_or(0) : beads.size(), plan);

@@ -113,6 +113,28 @@ void require_record_lasts(const Drive& drive, std::int64_t cycles, const Where& 
                   drive.recorded->info().file, lasts, cycles));
 }
 
+namespace {
+
+/// The end of the ramp and the strength of the horizontal motion.
+std::string changes_in_words(const Drive& drive, double g) {
+  std::string text;
+  if (drive.horizontal) {
+    const double omega = drive.horizontal->ratio * drive.omega;
+    text +=
+        fmt::format(", along x X (n omega)^2/g = {:.6g}", drive.horizontal->amplitude * omega * omega / g);
+  }
+  if (drive.ramp) {
+    const DriveLevel& to = drive.ramp->to;
+    text += fmt::format(" before the ramp, {:.6g} at its {}; {} {} linear in time",
+                        to.amplitude * to.omega * to.omega / g, drive.ramp->returns ? "turn" : "end",
+                        drive.ramp->linear_quantity(),
+                        drive.ramp->changes_frequency() ? "and the frequency are" : "is");
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string beyond_the_sine(const Drive& drive, double gravity) {
   const double g = gravity > 0 ? gravity : 1;
   if (drive.recorded) {
@@ -125,8 +147,10 @@ std::string beyond_the_sine(const Drive& drive, double gravity) {
         drive.amplitude, 100 * share_of_sine(drive), drive.recorded->samples().size(), info.interval,
         range.lowest, range.highest, range.fall / g);
   }
-  if (drive.harmonics.empty()) return "";
-  return fmt::format(" of the first harmonic, largest downward acceleration {:.6g} g", drive.peak_fall() / g);
+  const std::string changes = changes_in_words(drive, g);
+  if (drive.harmonics.empty()) return changes;
+  return fmt::format(" of the first harmonic, largest downward acceleration {:.6g} g{}",
+                     drive.peak_fall() / g, changes);
 }
 
 std::vector<std::string> warnings_of_record(const Drive& drive) {

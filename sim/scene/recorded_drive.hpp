@@ -40,8 +40,9 @@ double share_of_sine(const Drive& drive);
 /// \throws ConfigError at `where` if the record of a drive ends before `cycles` cycles
 void require_record_lasts(const Drive& drive, std::int64_t cycles, const Where& where);
 
-/// What `explain` says about a drive that is not a sine: extremes, and for a record its length and the share
-/// of its sine. Empty for a sine. \param gravity magnitude of g; 0: none
+/// What `explain` says about a drive that is not a sine: extremes, for a record its length and the share of
+/// its sine, the end of a ramp, the strength of a horizontal motion. Empty for a sine. \param gravity
+/// magnitude of g; 0: none
 std::string beyond_the_sine(const Drive& drive, double gravity);
 
 /// Doubts about the record of a drive, if it has one: hardly a sine, or noisy.

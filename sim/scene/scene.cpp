@@ -11,6 +11,7 @@
 #include "core/bounded_list.hpp"
 #include "core/key_record.hpp"
 #include "sim/laws/axes.hpp"
+#include "sim/scene/drive_tables.hpp"
 #include "sim/scene/presets.hpp"
 #include "trajectory/calibration_file.hpp"
 #include "trajectory/recorded_motion.hpp"
@@ -310,6 +311,7 @@ DriveSpec read_drive(const Section& s, const std::filesystem::path& folder, Scen
   if (scene.phase == 1)
     throw ConfigError(s.where("phase"), "1 is out of range; the value must be less than 1.");
   scene.drive.harmonics = read_harmonics(s);
+  scene.drive.horizontal = read_horizontal(s);
   read_record(s, folder, scene);
   read_schedule(s, scene.envelope);
   const auto ramp = s.number_in("ramp_cycles", 0, 1e6, true);
@@ -512,10 +514,31 @@ void check_gravity(const Scene& s, const Section& cell) {
                     s.gravity.x(), s.gravity.y(), s.gravity.z()));
 }
 
+void check_horizontal(const Scene& s, const Section& drive) {
+  const Where where = drive.where("horizontal");
+  if (s.drive.axis != Axis::z)
+    throw ConfigError(where, "is a motion along x beside that along z, but drive.axis is not \"z\".");
+  if (s.drive.recorded) throw ConfigError(where, "contradicts drive.file: a record has one direction.");
+}
+
+void check_ramp(const Scene& s, const Section& drive) {
+  if (s.until)
+    throw ConfigError(
+        drive.where("ramp"),
+        "contradicts [until]: no mean converges while the drive changes; remove one of the two.");
+  const bool goes_on = s.in_motion || s.phase.value_or(0) > 0;
+  if (s.drive.ramp->changes_frequency() && s.drive.ramp->first == 0 && goes_on)
+    throw ConfigError(drive.where("ramp"),
+                      "changes the frequency, and the drive begins within a cycle; set time.discard to at "
+                      "least 1, so that the ramp begins with a whole cycle.");
+}
+
 void check_drive(const Scene& s, const Section& drive) {
   const auto walls = s.walls();
   if (s.drive.moves() && std::none_of(walls.begin(), walls.end(), [](const Wall& w) { return w.moves; }))
     throw ConfigError(drive.where(""), "moves nothing: no wall rides with the plate.");
+  if (s.drive.horizontal) check_horizontal(s, drive);
+  if (s.drive.ramp) check_ramp(s, drive);
 }
 
 void check_contact_tables(const Scene& s, const Section& contact) {
@@ -547,6 +570,7 @@ Scene interpret(Config& config, const std::string& name, const std::filesystem::
   read_beads(beads, scene, voids);
   read_contact(contact, scene, voids);
   const DriveSpec spec = read_drive(drive, folder, scene);
+  const std::optional<RampSpec> ramp = read_ramp(drive);
   read_start(root.section("start"), folder, scene, voids);
   read_time(root.section("time"), scene);
   read_until(root.section("until"), scene);
@@ -564,6 +588,9 @@ Scene interpret(Config& config, const std::string& name, const std::filesystem::
   scene.drive.amplitude = solved.amplitude;
   scene.drive.omega = solved.omega;
   scene.drive.recorded = solved.recorded;
+  if (ramp)
+    scene.drive.ramp = make_ramp(*ramp, scene.drive, spec, g, cycles_before(scene.envelope, scene.discard),
+                                 scene.cycles, drive);
   const bool from_file = start_row(scene.start).from_file;
   if (!scene.n_beads && !from_file)
     throw ConfigError(beads.where("count"), "the number of beads is missing.");
@@ -631,6 +658,8 @@ void assign(Config& config, const std::vector<std::string>& assignments) {
   displace(config, upper);
   yield_to_record(config, upper);
   config.yield_to(upper, "drive", {"gamma", "k_m", "peak_velocity"});
+  config.yield_to(upper, "drive.ramp", {"amplitude", "gamma", "k_m", "peak_velocity"});
+  config.yield_to(upper, "drive.ramp", {"omega", "frequency"});
   for (const auto& assignment : assignments) config.assign(assignment);
 }
 
@@ -706,7 +735,7 @@ std::vector<Wall> Scene::walls() const {
 RunConditions conditions_of(const Scene& scene, std::optional<std::size_t> beads) {
   RunConditions conditions{.n_l = {}, .gamma = {}, .start = std::string(start_row(scene.start).word)};
   if (beads) conditions.n_l = static_cast<double>(*beads) / scene.width;
-  if (scene.g() > 0) conditions.gamma = scene.drive.gamma(scene.g());
+  if (scene.g() > 0 && !scene.drive.ramp) conditions.gamma = scene.drive.gamma(scene.g());
   return conditions;
 }
 

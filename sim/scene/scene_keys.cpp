@@ -293,6 +293,55 @@ void add_drive(Rows& rows) {
        "[[cycle, factor], …]: factor on the amplitude, interpolated linearly, for example to fluidise a bed "
        "and then calm it; cycles increase, factors are 0 or above, the last is 1. Not with a ramp"}};
   rows.insert(rows.end(), drive.begin(), drive.end());
+  const std::string ramp = "[drive.ramp]: the drive changes linearly in time during time.cycles; ";
+  const Rows changing = {
+      {"drive.ramp.gamma", "1", "", "3.0",
+       ramp + "Γ at its end, then Γ is linear. At most one of gamma, amplitude, k_m, peak_velocity; without "
+              "any, "
+              "the one of [drive] stays"},
+      {"drive.ramp.peak_acceleration_g", "g", "", "3.0", ""},
+      {"drive.ramp.peak_acceleration_m_s2", "m/s²", "", "29.4", "", laboratory},
+      {"drive.ramp.amplitude", "σ", "", "3.0", "A at the end of the ramp, then A is linear"},
+      {"drive.ramp.amplitude_sigma", "σ", "", "3.0", ""},
+      {"drive.ramp.amplitude_mm", "mm", "", "6.0", "", laboratory},
+      {"drive.ramp.k_m", "1", "", "9.0",
+       "K_m at the end of the ramp; its root, the peak velocity, is linear"},
+      {"drive.ramp.peak_velocity", "v0", "", "3.0", "Aω at the end of the ramp, then Aω is linear"},
+      {"drive.ramp.peak_velocity_v0", "v0", "", "3.0", ""},
+      {"drive.ramp.peak_velocity_mm_s", "mm/s", "", "420.0", "", laboratory},
+      {"drive.ramp.frequency", "1/t0", "that of [drive]", "0.2",
+       "f at the end of the ramp, linear in time; the phase is its integral"},
+      {"drive.ramp.frequency_per_t0", "1/t0", "", "0.2", ""},
+      {"drive.ramp.frequency_hz", "1/s", "", "14.0", "", laboratory},
+      {"drive.ramp.omega", "1/t0", "that of [drive]", "1.25", "ω at the end of the ramp"},
+      {"drive.ramp.omega_per_t0", "1/t0", "", "1.25", ""},
+      {"drive.ramp.omega_rad_s", "rad/s", "", "88.0", "", laboratory},
+      {"drive.ramp.return",
+       "",
+       "false",
+       "true",
+       "true: half of time.cycles, which must be even, lead to the end of the ramp, the other half back",
+       {"drive.ramp.gamma=3.0", "time.cycles=4"}},
+      {"drive.horizontal.amplitude", "σ", "", "0.5",
+       "[drive.horizontal]: the plate and the walls that ride with it also move along x, by X sin(nωt + "
+       "2πφ); "
+       "X; with drive.axis = \"z\""},
+      {"drive.horizontal.amplitude_sigma", "σ", "", "0.5", ""},
+      {"drive.horizontal.amplitude_mm", "mm", "", "1.0", "", laboratory},
+      {"drive.horizontal.ratio",
+       "1",
+       "1",
+       "2",
+       "n, a whole number from 1 to 31: frequency relative to that along z",
+       {"drive.horizontal.amplitude=0.5"}},
+      {"drive.horizontal.phase",
+       "cycles",
+       "0",
+       "0.25",
+       "φ in cycles of this motion, from 0 to below 1; with n = 1, 0: a tilted line; 0.25 and X = A: a "
+       "circle",
+       {"drive.horizontal.amplitude=0.5"}}};
+  rows.insert(rows.end(), changing.begin(), changing.end());
 }
 
 void add_start_and_time(Rows& rows) {

@@ -197,23 +197,21 @@ class AllPairsSolver : public Solver {
     p.memory = pairs_.memory.data();
     p.packets = packets_of(pairs_), p.dt = s.dt, p.locate = plan_.locate, p.quantum = quantum_;
     if (p.packets > 0) overlap = kernels_.pairs(p);
-    const int axis = static_cast<int>(s.drive.axis);
+    const Vec3 plate = s.plate_displacement();
     for (Size w = 0; w < s.walls.size(); ++w) {
       const Wall& wall = s.walls[w];
       if (!walls_[w].remembers && is_far(s, wall)) continue;
-      const double plate = wall.moves ? s.plate_height() : 0;
       WallArgs g{};
       g.records = p.records, g.spins = p.spins, g.forces = p.forces, g.dt = s.dt, g.locate = plan_.locate,
       g.quantum = quantum_;
-      Vec3 v = Vec3::Zero();
-      if (wall.moves) v[axis] = plate_velocity(s);
+      const Vec3 v = wall.moves ? plate_velocity(s) : Vec3::Zero();
       g.n[0] = wall.n.x(), g.velocity[0] = v.x();
       if (plan_.dimension == 2) {
         g.n[1] = wall.n.z(), g.velocity[1] = v.z();
       } else {
         g.n[1] = wall.n.y(), g.velocity[1] = v.y(), g.n[2] = wall.n.z(), g.velocity[2] = v.z();
       }
-      g.offset = wall.moves ? wall.offset + wall.n[axis] * plate : wall.offset;
+      g.offset = wall.moves ? wall.offset + wall.n.dot(plate) : wall.offset;
       g.bead = walls_[w].i.data(), g.packets = packets_of(walls_[w]);
       g.constants = walls_[w].constants.data(), g.constants_step = step_of(walls_[w].constants, walls_[w]);
       g.memory = walls_[w].memory.data();
@@ -222,14 +220,15 @@ class AllPairsSolver : public Solver {
           std::any_of(walls_[w].memory.begin(), walls_[w].memory.end(), [](double m) { return m != 0; });
     }
     if (s.plate_drag > 0) {
-      const Vec3 v = plate_velocity(s) * Vec3::Unit(axis);
+      const Vec3 v = plate_velocity(s);
       beads_.add_plate_drag(s, v.x(), v.z(), 0, beads_.size());
     }
     return overlap;
   }
-  [[nodiscard]] double plate_velocity(const System& s) const {
-    return plan_.key.velocity == Velocity::full_step ? (s.plate_height() - s.plate_height_before()) / s.dt
-                                                     : s.plate_velocity();
+  [[nodiscard]] Vec3 plate_velocity(const System& s) const {
+    if (plan_.key.velocity == Velocity::full_step)
+      return (s.plate_displacement() - s.plate_displacement_before()) / s.dt;
+    return s.plate_velocity_in_space();
   }
   /// Whether no bead can touch a wall, for any position of the plate.
   [[nodiscard]] bool is_far(const System& s, const Wall& wall) const {

@@ -298,7 +298,6 @@ void ListSolver::pair_forces(const System& s, Part& part, Size begin, Size end) 
 /// Forces of walls, and plate drag.
 void ListSolver::wall_forces(const System& s, Part& part) {
   part.overlap = 0;
-  const int axis = static_cast<int>(s.drive.axis);
   const bool equal = beads_.packed.equal();
   for (Size w = 0; w < part.walls.walls.size(); ++w) {
     ContactPackets& near = part.walls.walls[w];
@@ -312,26 +311,26 @@ void ListSolver::wall_forces(const System& s, Part& part) {
     g.constants_step = equal ? 0 : static_cast<std::ptrdiff_t>(near.constants.size()) / near.count;
     g.packets = near.count;
     Vec3 v = Vec3::Zero();
-    if (wall.moves)
-      v[axis] = beads_.plan.key.velocity == Velocity::full_step ? (plate_.height - plate_.before) / s.dt
-                                                                : plate_.velocity;
+    if (wall.moves && beads_.plan.key.velocity == Velocity::full_step)
+      v = (plate_.displacement - plate_.before) / s.dt;
+    else if (wall.moves)
+      v = plate_.velocity;
     if (s.dimension == 2) {
       g.n[0] = wall.n.x(), g.n[1] = wall.n.z();
       g.velocity[0] = v.x(), g.velocity[1] = v.z();
     } else {
       for (int k = 0; k < 3; ++k) g.n[k] = wall.n[k], g.velocity[k] = v[k];
     }
-    g.offset = wall.moves ? wall.offset + wall.n[axis] * plate_.height : wall.offset;
+    g.offset = wall.moves ? wall.offset + wall.n.dot(plate_.displacement) : wall.offset;
     g.dt = s.dt;
     g.locate = beads_.plan.locate;
     g.quantum = quantum_;
     part.overlap = std::max(part.overlap, beads_.kernels.walls(g));
     part.wall_visits += near.count;
   }
-  if (s.plate_drag > 0) {
-    const Vec3 v = plate_.velocity * Vec3::Unit(axis);
-    beads_.packed.add_plate_drag(s, v.x(), v.z(), part.share.begin, part.share.end);
-  }
+  if (s.plate_drag > 0)
+    beads_.packed.add_plate_drag(s, plate_.velocity.x(), plate_.velocity.z(), part.share.begin,
+                                 part.share.end);
 }
 
 void ListSolver::forces(const System& s, Part& part) {
@@ -391,7 +390,7 @@ void ListSolver::add_up_motion(const System& s) {
   if (rebuild_every_ > 0) ++calls_;
   const double added = strayed + static_cast<double>(inner_.steps()) * s.dt * s.gravity.norm();
   speed_bound_ = inner_.fastest() + added;
-  plate_ = {s.plate_height(), s.plate_velocity(), plate_.height};
+  plate_ = {s.plate_displacement(), s.plate_velocity_in_space(), plate_.displacement};
   walls_.add_step(s, plate_, inner_.range(), added);
   if (is_forced()) walls_.discard();
   pairs_stale_ = is_forced() || !inner_.is_valid(s.dt);
@@ -521,7 +520,8 @@ void ListSolver::advance(System& s, std::int64_t steps) {
   const FlushSubnormals flush;
   const bool known = s.forces_known && s.forces.size() == s.beads.size();
   s.forces_known = known;
-  const PlateMotion plate = {s.plate_height(), s.plate_velocity(), s.plate_height_before()};
+  const PlateMotion plate = {s.plate_displacement(), s.plate_velocity_in_space(),
+                             s.plate_displacement_before()};
   const bool goes_on = is_as_left(s, plate);
   is_left_ = false;
   if (!goes_on) {

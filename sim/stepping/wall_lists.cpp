@@ -34,7 +34,7 @@ void WallLists::reset(Size walls) {
 void WallLists::add_step(const System& s, const PlateMotion& plate, const VelocityRange& range,
                          double added) {
   // The displacement of a wall is its actual one in this step, not its velocity at one end of the step.
-  const Vec3 moved = ((plate.height - plate.before) / s.dt) * Vec3::Unit(static_cast<int>(s.drive.axis));
+  const Vec3 moved = (plate.displacement - plate.before) / s.dt;
   for (Size w = 0; w < s.walls.size(); ++w) {
     const Vec3 v = s.walls[w].moves ? moved : Vec3::Zero();
     approach_[w] += s.dt * closing_speed(s, s.walls[w].n, v, range, added);
@@ -52,8 +52,7 @@ void WallLists::refresh(const System& s, const PlateMotion& plate, const Velocit
   for (Size w = 0; w < s.walls.size(); ++w) {
     stale_[w] = all_ || !(approach_[w] <= margin_[w]);
     if (!stale_[w]) continue;
-    Vec3 v = Vec3::Zero();
-    if (s.walls[w].moves) v[static_cast<int>(s.drive.axis)] = plate.velocity;
+    const Vec3 v = s.walls[w].moves ? plate.velocity : Vec3::Zero();
     margin_[w] = std::clamp(kWallSteps * s.dt * (closing_speed(s, s.walls[w].n, v, range, 0) + 0.1),
                             1e-5 * skin, skin);
     approach_[w] = 0;

@@ -12,9 +12,11 @@ namespace twincell::sim {
 
 /// Displacement and velocity of the plate, sigma and sigma/t0, and its displacement one step earlier.
 struct PlateMotion {
-  double height = 0, velocity = 0, before = 0;
+  Vec3 displacement = Vec3::Zero(), velocity = Vec3::Zero(), before = Vec3::Zero();
 
-  bool operator==(const PlateMotion&) const = default;
+  bool operator==(const PlateMotion& other) const {
+    return displacement == other.displacement && velocity == other.velocity && before == other.before;
+  }
 };
 
 /// Margins of the wall lists. A list contains every bead within the margin of its wall. It remains valid

@@ -4,6 +4,7 @@
 /// plate is z = 0. A 2D system is in the plane y = 0.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -71,34 +72,61 @@ struct System {
   std::int64_t step = 0;  ///< whole steps since phase 0: time is step * dt, never a running sum
   double dt = 0;
 
-  /// Fraction of the period at the present step, with the same bits in every period.
+  /// Fraction of the period at the present step. If the frequency is constant, with the same bits in every
+  /// period.
   [[nodiscard]] double phase() const { return phase_at(step); }
   [[nodiscard]] double cycles() const { return cycles_at(step); }
   [[nodiscard]] double time() const { return static_cast<double>(step) * dt; }
   /// Displacement of the plate along drive.axis.
   [[nodiscard]] double plate_height() const { return plate_height_at(step); }
+  /// Velocity of the plate along drive.axis.
   [[nodiscard]] double plate_velocity() const {
-    const double v = drive.velocity(phase(), cycle_of(step));
-    if (envelope.points.empty()) return v;
-    return envelope.at(cycles()) * v +
-           envelope.slope(cycles()) / drive.period() * drive.displacement(phase(), cycle_of(step));
+    return in_envelope(drive.velocity(phase(), cycle_of(step)), drive.displacement(phase(), cycle_of(step)));
+  }
+  /// Displacement and velocity of the plate in space.
+  [[nodiscard]] Vec3 plate_displacement() const { return plate_displacement_at(step); }
+  [[nodiscard]] Vec3 plate_velocity_in_space() const {
+    Vec3 v = plate_velocity() * Vec3::Unit(static_cast<int>(drive.axis));
+    if (drive.horizontal)
+      v.x() += in_envelope(drive.horizontal_velocity(phase()), drive.horizontal_displacement(phase()));
+    return v;
   }
   /// Displacement of the plate at the previous step, with the same bits as then.
-  [[nodiscard]] double plate_height_before() const { return plate_height_at(step - 1); }
-  [[nodiscard]] Vec3 plate_displacement() const {
-    return plate_height() * Vec3::Unit(static_cast<int>(drive.axis));
+  [[nodiscard]] Vec3 plate_displacement_before() const { return plate_displacement_at(step - 1); }
+  /// The step that is nearest to `cycles` cycles after phase 0.
+  [[nodiscard]] std::int64_t step_at(double cycles) const {
+    return std::llround(changes_frequency() ? drive.time_at(cycles) / dt
+                                            : cycles * static_cast<double>(steps_per_period));
   }
+  /// Whether the frequency of the drive changes, so that a cycle is no fixed number of steps.
+  [[nodiscard]] bool changes_frequency() const { return drive.ramp && drive.ramp->changes_frequency(); }
 
  private:
   [[nodiscard]] double phase_at(std::int64_t k) const {
+    if (changes_frequency()) return cycles_at(k) - std::floor(cycles_at(k));
     const std::int64_t n = steps_per_period;
     return static_cast<double>((k + n) % n) / static_cast<double>(n);  // k >= -1
   }
   [[nodiscard]] std::int64_t cycle_of(std::int64_t k) const {
+    if (changes_frequency()) return static_cast<std::int64_t>(std::floor(cycles_at(k)));
     return (k + steps_per_period) / steps_per_period - 1;
   }
   [[nodiscard]] double cycles_at(std::int64_t k) const {
+    if (changes_frequency()) return drive.cycles_at(static_cast<double>(k) * dt);
     return static_cast<double>(cycle_of(k)) + phase_at(k);
+  }
+  /// Velocity of a motion whose stroke the envelope multiplies. \param v, z of the motion without it
+  [[nodiscard]] double in_envelope(double v, double z) const {
+    if (envelope.points.empty()) return v;
+    return envelope.at(cycles()) * v + envelope.slope(cycles()) / drive.period() * z;
+  }
+  [[nodiscard]] Vec3 plate_displacement_at(std::int64_t k) const {
+    Vec3 r = plate_height_at(k) * Vec3::Unit(static_cast<int>(drive.axis));
+    if (drive.horizontal) {
+      const double x = drive.horizontal_displacement(phase_at(k));
+      r.x() += envelope.points.empty() ? x : envelope.at(cycles_at(k)) * x;
+    }
+    return r;
   }
   [[nodiscard]] double plate_height_at(std::int64_t k) const {
     const double s = drive.displacement(phase_at(k), cycle_of(k));
@@ -108,7 +136,7 @@ struct System {
 
 /// n . w of a wall at present.
 inline double offset_now(const System& s, const Wall& wall) {
-  return wall.moves ? wall.offset + wall.n[static_cast<int>(s.drive.axis)] * s.plate_height() : wall.offset;
+  return wall.moves ? wall.offset + wall.n.dot(s.plate_displacement()) : wall.offset;
 }
 
 }  // namespace twincell::sim

@@ -36,6 +36,8 @@ void set_box(Snapshot& s, const TrajectoryInfo& info, const ExportUnits& units) 
     const int axis = static_cast<int>(info.drive->axis);
     lower[axis] -= info.drive->displacement_bound();
   }
+  if (info.drive && info.drive->horizontal && !box.periodic(Axis::x))
+    lower.x() -= info.drive->horizontal->amplitude, upper.x() += info.drive->horizontal->amplitude;
   const auto is_periodic = [&](Axis axis) { return box.periodic(axis); };
   if (box.dimension == 2) {
     // The plane of the beads lies in the middle of the gap.

@@ -12,6 +12,7 @@
 #include "core/hdf5.hpp"
 #include "core/hdf5_self_contained.hpp"
 #include "trajectory/formats/contact_lists.hpp"
+#include "trajectory/formats/drive_motion_group.hpp"
 #include "trajectory/formats/recorded_group.hpp"
 #include "twincell_version.hpp"
 
@@ -172,7 +173,7 @@ void H5mdWriter::Impl::create_parameters() {
     h5::write_attribute(drive.get(), "phase_convention",
                         info.drive->recorded
                             ? info.drive->formula() + ", cycle begins where the component A sin(omega t) does"
-                        : info.drive->harmonics.empty()
+                        : info.drive->harmonics.empty() && !info.drive->ramp && !info.drive->horizontal
                             ? std::string("A sin(omega t), cycle begins at mean height moving up")
                             : info.drive->formula() + ", cycle begins at omega t = 0");
     h5::write_scalar(drive.get(), "amplitude", info.drive->amplitude);
@@ -182,6 +183,7 @@ void H5mdWriter::Impl::create_parameters() {
     if (!harmonics.empty())
       h5::write_dataset(drive.get(), "harmonics", harmonics.data(), {harmonics.size() / 2, 2});
     if (info.drive->recorded) write_recorded(drive.get(), *info.drive->recorded);
+    write_drive_motion(drive.get(), *info.drive);
   }
   if (info.phases_per_cycle > 0)
     h5::write_dataset(parameters.get(), "phases_per_cycle", &info.phases_per_cycle, {});
@@ -641,6 +643,7 @@ void H5mdReader::Impl::read_parameters() {
       }
       if (h5::exists(group.get(), "recorded"))
         drive.recorded = read_recorded(group.get(), {path.string(), 0, 0, "parameters/drive/recorded"});
+      read_drive_motion(group.get(), drive, {path.string(), 0, 0, "parameters/drive"});
       info.drive = drive;
     }
   }

@@ -141,6 +141,21 @@ def test_analyze_is_the_verb_to_the_bit(sim_file):
     assert mine.to_dataframe().loc["q6", "value"] == q6.value
 
 
+def test_windows_are_those_of_the_verb(tmp_path, scene_file):
+    ramp = tmp_path / "ramp.h5"
+    words = ("--set", "drive.ramp.gamma=3.0", "--set", "time.cycles=4", "--set", "time.phases=10")
+    assert program("simulate", scene_file, "-o", ramp, "-q", *words).returncode == 0
+    verb = document("analyze", ramp, "--window-cycles", 2, "--only", "q6,s_b")["windows"]
+    mine = twincell.analyze_windows(ramp, 2, ["q6", "s_b"])
+    assert len(mine) == len(verb) == 2
+    for a, b in zip(mine, verb):
+        assert (a.first_cycle, a.cycles, list(a.gamma), list(a.omega)) == (b["first_cycle"], b["cycles"], b["gamma"], b["omega"])
+        assert a.results.to_dict() == b["results"]
+    assert mine[1].gamma[1] == pytest.approx(3.0)
+    with pytest.raises(twincell.ConfigError, match="the drive changes during the run"):
+        twincell.analyze(ramp, ["q6"])
+
+
 def test_results_pool_and_write_as_the_verb(tmp_path, scene_file):
     files = []
     for seed in (1, 2):

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <random>
 
 #include "analysis/force/contact_force.hpp"
@@ -19,10 +20,11 @@ constexpr int kColumns = 8, kRows = 10;
 
 /// A triangular lattice of spacing a < 1 in a periodic box; every contact has the force f(overlap) of the
 /// given function.
-MemoryTrajectory compressed(double a, const std::function<double()>& force, int frames = 1) {
-  MemoryTrajectory t = empty(2, period_of_lattice(kColumns, kRows, a), true);
+MemoryTrajectory compressed(double a, const std::function<double()>& force, int frames = 1,
+                            int rows = kRows) {
+  MemoryTrajectory t = empty(2, period_of_lattice(kColumns, rows, a), true);
   t.info().columns.contact_forces = true;
-  add(t, triangular_lattice(kColumns, kRows, a));
+  add(t, triangular_lattice(kColumns, rows, a));
   Frame frame = t.frames().front();
   const analysis::Neighbours near = analysis::find_neighbours(frame, t.info().box, 1.01 * a);
   MemoryTrajectory out(t.info());
@@ -57,6 +59,65 @@ TEST(Stress, OfACompressedTriangularLatticeIsIsotropic) {
              values_of(t, "pressure")[0]);
     EXPECT_NEAR(values_of(t, "contact_force")[0], f, 1e-9 * f);
     EXPECT_NEAR(values_of(t, "mechanical_contact_number")[0], 6, 1e-12);
+  }
+}
+
+// The Gaussian is wider than the lattice, whose shortest reciprocal vector is 4 pi/(sqrt(3) a): the field is
+// uniform up to exp(-26), where the Gaussian does not reach the ends of the lattice.
+TEST(StressField, OfACompressedTriangularLatticeIsUniform) {
+  const double a = 0.95, f = 50, expected = std::sqrt(3.0) * f / a;
+  const MemoryTrajectory t = compressed(
+      a, [f] { return f; }, 2, 26);
+  const auto field = values_of(t, "stress_field"), z = values_of(t, "stress_field_z");
+  const std::size_t columns = values_of(t, "stress_field_x").size();
+  ASSERT_EQ(field.size(), 4 * columns * z.size());
+  double diagonal = 0, off = 0;
+  int points = 0;
+  for (std::size_t r = 0; r < z.size(); ++r) {
+    if (z[r] < 5 || z[r] > 16) continue;
+    for (std::size_t c = 0; c < columns; ++c, ++points) {
+      const double* s = &field[4 * (r * columns + c)];
+      diagonal = std::max({diagonal, std::abs(s[0] - expected), std::abs(s[3] - expected)});
+      off = std::max({off, std::abs(s[1]), std::abs(s[2])});
+    }
+  }
+  EXPECT_GE(points, 20);
+  validate({"V5.24",
+            "stress field of a compressed lattice: largest error of sigma_xx and sigma_zz, over sqrt(3) f/a",
+            0, 2e-3, "sqrt(3) f/a"},
+           diagonal / expected);
+  validate({"V5.24", "stress field of a compressed lattice: largest sigma_xz and sigma_zx, over sqrt(3) f/a",
+            0, 2e-3, "symmetry"},
+           off / expected);
+}
+
+// One contact of two discs with the force (2, 0, 3): in its middle the field is
+// f_a l_b/(sqrt(2 pi) w) erf(1/(2 sqrt(2) w)), and its integral f_a l_b.
+TEST(StressField, OfOneContactIsTheClosedForm) {
+  MemoryTrajectory t = empty(2, Vec3(21, 1, 21), false);
+  t.info().columns.contact_forces = true;
+  add(t, {Vec3(11, 0, 10.5), Vec3(10, 0, 10.5)});
+  Frame frame = t.frames().front();
+  frame.contact_forces = {{0, 1, 0, Vec3::UnitX(), 2, Vec3(0, 0, 3)}};
+  MemoryTrajectory one(t.info());
+  one.append(frame);
+  analysis::AnalysisOptions options;
+  options.only = {"stress_field"};
+  options.field_cell = 1;
+  const analysis::Result field = analysis::find_result(analysis::analyze(one, options), "stress_field");
+  ASSERT_EQ(field.shape[1], 21);
+  const std::size_t middle = 4 * (10 * 21 + 10);  // the point (10.5, 10.5)
+  const double closed = std::erf(1 / (2 * std::sqrt(2.0))) / std::sqrt(2 * std::numbers::pi);
+  const double expected[] = {2, 0, 3, 0};
+  double sums[4] = {0, 0, 0, 0};
+  for (std::size_t k = 0; k < field.values.size(); ++k) sums[k % 4] += field.values[k];
+  for (std::size_t k = 0; k < 4; ++k) {
+    validate({"V5.24", fmt::format("stress field in the middle of one contact, component {}", k),
+              expected[k] * closed, 1e-9, "f_a l_b erf(l/(2 sqrt(2) w))/(sqrt(2 pi) w l)"},
+             field.values[middle + k]);
+    validate({"V5.24", fmt::format("sum of that field over its points one sigma apart, component {}", k),
+              expected[k], 1e-3 * expected[k], "f_a l_b"},
+             sums[k]);
   }
 }
 

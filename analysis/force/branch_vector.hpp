@@ -1,0 +1,18 @@
+#pragma once
+/// \file
+/// The branch vector of a contact.
+
+#include "trajectory/trajectory.hpp"
+
+namespace twincell::analysis {
+
+/// From the centre of j to that of i, (R_i + R_j - overlap) n; or from the wall to the centre of i,
+/// (R_i - overlap) n; sigma. Beads of unknown radius have the diameter 1.
+inline Vec3 branch_vector(const ContactForce& c, const TrajectoryInfo& info) {
+  const auto radius = [&](std::int32_t bead) {
+    return info.radius.empty() ? 0.5 : info.radius[static_cast<std::size_t>(bead)];
+  };
+  return (radius(c.i) + (c.j >= 0 ? radius(c.j) : 0) - c.overlap) * c.normal;
+}
+
+}  // namespace twincell::analysis

@@ -1,0 +1,141 @@
+#include "analysis/runs/windows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "analysis/motion/centre_of_mass.hpp"
+#include "core/cancellation.hpp"
+#include "core/error.hpp"
+#include "core/escape.hpp"
+
+namespace twincell::analysis {
+
+namespace {
+
+/// The frames of a trajectory from `begin` to before `end`.
+class Part : public TrajectorySource {
+ public:
+  Part(const TrajectorySource& whole, std::size_t begin, std::size_t end)
+      : whole_(whole), begin_(begin), end_(end) {}
+  [[nodiscard]] const TrajectoryInfo& info() const override { return whole_.info(); }
+  [[nodiscard]] std::size_t n_frames() const override { return end_ - begin_; }
+  void read(std::size_t index, Frame& frame) const override { whole_.read(begin_ + index, frame); }
+  [[nodiscard]] std::string name() const override { return whole_.name(); }
+
+ private:
+  const TrajectorySource& whole_;
+  std::size_t begin_, end_;
+};
+
+/// A window's place in the trajectory.
+struct Place {
+  std::int64_t first_cycle;
+  std::size_t begin, end;  ///< frames
+  double time;             ///< of its first frame, t0
+  double fraction;         ///< phase of its first frame
+};
+
+std::vector<Place> places_of(const TrajectorySource& trajectory, std::int64_t discard, std::int64_t cycles) {
+  std::vector<Place> places;
+  Frame frame;
+  std::int64_t first = -1, last = -1;
+  for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
+    throw_if_cancelled();
+    trajectory.read(f, frame);
+    if (frame.cycle < 0) continue;
+    if (first < 0) first = frame.cycle + discard;
+    if (frame.cycle < first) continue;
+    const std::int64_t start = first + (frame.cycle - first) / cycles * cycles;
+    if (places.empty() || places.back().first_cycle != start) {
+      const int phases = std::max(1, trajectory.info().phases_per_cycle);
+      places.push_back({start, f, f, frame.time, static_cast<double>(std::max(0, frame.phase)) / phases});
+    }
+    places.back().end = f + 1;
+    last = frame.cycle;
+  }
+  if (!places.empty() && last + 1 < places.back().first_cycle + cycles) places.pop_back();
+  return places;
+}
+
+std::optional<double> rest_height_of(const TrajectorySource& trajectory) {
+  Frame frame;
+  trajectory.read(0, frame);
+  std::string why_not;
+  return resting_height(trajectory.info(), frame, why_not);
+}
+
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.10g}", value) : "";
+}
+
+}  // namespace
+
+std::vector<Window> analyze_windows(const TrajectorySource& trajectory, const AnalysisOptions& options,
+                                    std::int64_t cycles, Progress& progress) {
+  const Where where{.file = trajectory.name(), .key = "window_cycles"};
+  if (cycles < 1) throw ConfigError(where, fmt::format("a window of {} cycles is empty; at least 1", cycles));
+  if (options.cycles > 0)
+    throw ConfigError({.file = {}, .key = "cycles"}, "chooses cycles, but the windows cover all of them");
+  if (!trajectory.info().columns.phase)
+    throw ConfigError(where, "the frames of the trajectory have no cycle number");
+  const std::vector<Place> places = places_of(trajectory, options.discard_cycles, cycles);
+  if (places.empty())
+    throw ConfigError(where, fmt::format("no {} cycles of the trajectory fill a window", cycles));
+  AnalysisOptions one = options;
+  one.discard_cycles = 0;
+  one.cycles = cycles;
+  if (!one.rest_height) one.rest_height = rest_height_of(trajectory);
+  std::vector<Window> windows;
+  for (const Place& place : places) {
+    Window window{.first_cycle = place.first_cycle, .cycles = cycles, .drive = {}, .results = {}};
+    if (const std::optional<Drive>& drive = trajectory.info().drive) {
+      const double begin = drive->cycles_at(place.time) - place.fraction;
+      window.drive = {drive->at(begin), drive->at(begin + static_cast<double>(cycles))};
+    }
+    window.results = analyze(Part(trajectory, place.begin, place.end), one);
+    windows.push_back(std::move(window));
+    progress.update(static_cast<std::int64_t>(windows.size()), static_cast<std::int64_t>(places.size()));
+  }
+  return windows;
+}
+
+std::string windows_csv(const std::vector<Window>& windows) {
+  std::string text = "first_cycle,cycles,gamma_begin,gamma_end,omega_begin,omega_end";
+  std::vector<std::string> names;
+  for (const Result& r : windows.front().results)
+    if (r.shape.empty()) names.push_back(r.name);
+  const auto is_word = [&](const std::string& name) {
+    return std::any_of(windows.begin(), windows.end(),
+                       [&](const Window& w) { return !find_result(w.results, name).text.empty(); });
+  };
+  for (const std::string& name : names) {
+    fmt::format_to(std::back_inserter(text), ",{0}", name);
+    if (!is_word(name)) fmt::format_to(std::back_inserter(text), ",{0}_low,{0}_high", name);
+  }
+  text += '\n';
+  for (const Window& w : windows) {
+    fmt::format_to(std::back_inserter(text), "{},{}", w.first_cycle, w.cycles);
+    if (w.drive)
+      fmt::format_to(std::back_inserter(text), ",{},{},{},{}", number((*w.drive)[0].gamma()),
+                     number((*w.drive)[1].gamma()), number((*w.drive)[0].omega), number((*w.drive)[1].omega));
+    else
+      text += ",,,,";
+    for (const std::string& name : names) {
+      const Result& r = find_result(w.results, name);
+      if (is_word(name)) {
+        fmt::format_to(std::back_inserter(text), ",{}", csv_field(r.text));
+        continue;
+      }
+      const bool known = r.present() && r.interval.has_value();
+      fmt::format_to(std::back_inserter(text), ",{},{},{}", number(r.value()),
+                     known ? number(r.interval->low) : "", known ? number(r.interval->high) : "");
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace twincell::analysis
