@@ -108,7 +108,8 @@ std::string as_text(const std::vector<analysis::Window>& windows, const std::vec
   if (phase) text += fmt::format(" {:<12}", "phase");
   for (const std::string& name : names) text += fmt::format(" {:>12}", name);
   const auto change = [](double begin, double end) {
-    return begin == end ? fmt::format("{:.4g}", begin) : fmt::format("{:.4g} to {:.4g}", begin, end);
+    const std::string from = fmt::format("{:.4g}", begin), to = fmt::format("{:.4g}", end);
+    return from == to ? from : from + " to " + to;
   };
   for (const analysis::Window& w : windows) {
     text += fmt::format("\n{:<13}", fmt::format("{} to {}", w.first_cycle, w.first_cycle + w.cycles - 1));

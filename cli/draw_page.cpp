@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <vector>
@@ -109,7 +110,7 @@ json map_json() {
 constexpr std::string_view kBody = R"(
 <noscript><p><strong>The page needs JavaScript.</strong></p></noscript>
 <main class="needs-script">
-<div class="controls">
+<div class="controls" id="controls-frame">
 <button id="play">Play</button>
 <label>frame <input type="range" id="frame" min="0" value="0" step="1"></label><output id="frame-label"></output>
 </div>
@@ -175,7 +176,7 @@ DrawnPage page_of(const TrajectorySource& source, const imaging::DrawJob& job, c
     data["colour"]["unit"] = job.colours.unit;
     data["colour"]["range"] = page.range;
   }
-  const std::string title = html_text(one_line(trajectory));
+  const std::string title = html_text(one_line(std::filesystem::path(trajectory).filename().string()));
   page.html = draw_page().mark;
   page.html += fmt::format(
       "<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width, "

@@ -29,7 +29,7 @@ struct DrawnPage {
 
 /// Makes the page of the chosen frames. Positions are rounded to 1/65534 of their range in the page, numbers
 /// likewise. Of the job, frames, colours, tracks and frames_per_second are used.
-/// \param trajectory the name of the file in the command
+/// \param trajectory the file, whose name is the title
 /// \throws ConfigError for frames that the trajectory lacks, for a job that asks for vectors, contacts or a
 /// scale, or if the page would be larger than kLargestPage
 DrawnPage page_of(const TrajectorySource& source, const imaging::DrawJob& job, const std::string& trajectory,

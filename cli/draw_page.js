@@ -15,7 +15,7 @@
     return {levels, at: k => levels[k] === kAbsent ? NaN : part.low + step * levels[k], low: part.low, high: part.high};
   }
   const x = numbersOf(data.x), z = numbersOf(data.z), y = solid ? numbersOf(data.y) : null;
-  const number = data.colour ? numbersOf(data.colour) : null;
+  const number = data.colour ? numbersOf(data.colour) : null, unit = data.colour ? data.colour.unit.replace('sigma', 'σ') : '';
   const radius = i => typeof data.radius === 'number' ? data.radius : data.radius[i];
   const largest = typeof data.radius === 'number' ? data.radius : data.radius.reduce((a, b) => Math.max(a, b), 0);
   const mapped = number ? (() => {
@@ -77,17 +77,24 @@
   }
   const ink = () => getComputedStyle(document.body).getPropertyValue('--ink');
   function drawCell() {
-    const [sx, sy, plate] = data.cells[state.frame], unit = window.devicePixelRatio || 1;
+    const [sx, sy, plate] = data.cells[state.frame], px = window.devicePixelRatio || 1;
     const foot = (right, back, height) => {
       const lean = Math.tan(tilt[right ? 1 : 0] * Math.PI / 180) * (height - plate);
       return [sx + (right ? upper[0] + lean : lower[0] - lean), sy + (back ? upper[1] : lower[1]), height];
     };
-    for (const back of solid ? [true, false] : [false]) {
-      for (const right of [false, true]) line(foot(right, back, plate), foot(right, back, top), boundary[0], 2 * unit);
-      line(foot(false, back, plate), foot(true, back, plate), boundary[2], 3 * unit);
-      if (top >= upper[2]) line(foot(false, back, top), foot(true, back, top), boundary[2], 2 * unit);
+    if (!solid) {
+      for (const right of [false, true]) line(foot(right, false, plate), foot(right, false, top), boundary[0], 2 * px);
+      line(foot(false, false, plate), foot(true, false, plate), boundary[2], 3 * px);
+      if (top >= upper[2]) line(foot(false, false, top), foot(true, false, top), boundary[2], 2 * px);
+      return;
     }
-    if (solid) for (const right of [false, true]) for (const height of [plate, top]) line(foot(right, false, height), foot(right, true, height), boundary[1], unit);
+    for (const side of [false, true]) {
+      for (const back of [false, true]) line(foot(side, back, plate), foot(side, back, top), 'wall', px);
+      for (const height of [plate, top]) {
+        line(foot(side, false, height), foot(side, true, height), 'wall', px);
+        line(foot(false, side, height), foot(true, side, height), 'wall', px);
+      }
+    }
   }
   // A step over a periodic boundary is left out.
   function drawTracks() {
@@ -126,9 +133,9 @@
     }
   }
   function drawScaleBar() {
-    const mm = data.sigma_mm, unit = mm || 1, room = canvas.width / 4 / (scale / unit), decade = Math.pow(10, Math.floor(Math.log10(room)));
+    const mm = data.sigma_mm, per = mm || 1, room = canvas.width / 4 / (scale / per), decade = Math.pow(10, Math.floor(Math.log10(room)));
     const length = [5, 2, 1].map(s => s * decade).find(l => l <= room * (1 + 1e-9)), ratio = window.devicePixelRatio || 1;
-    const px = length * scale / unit, y = canvas.height - 10 * ratio;
+    const px = length * scale / per, y = canvas.height - 10 * ratio;
     pen.fillStyle = ink();
     pen.fillRect(8 * ratio, y - 3 * ratio, px, 3 * ratio);
     pen.font = `${13 * ratio}px system-ui, sans-serif`;
@@ -190,7 +197,7 @@
     if (!under) { $('readout').textContent = ''; return; }
     const place = (solid ? [0, 1, 2] : [0, 2]).map(a => `${'xyz'[a]} ${under.r[a].toFixed(3)}`).join(', ');
     const value = number ? number.at(state.frame * n + under.i) : NaN;
-    const said = !number ? '' : Number.isNaN(value) ? `, ${data.colour.name} not known` : `, ${data.colour.name} ${+value.toPrecision(4)} ${data.colour.unit}`;
+    const said = !number ? '' : Number.isNaN(value) ? `, ${data.colour.name} not known` : `, ${data.colour.name} ${+value.toPrecision(4)} ${unit}`;
     $('readout').textContent = `bead ${under.i}: ${place} σ${said}`;
   }
   canvas.addEventListener('pointerdown', event => { dragged = {at: place(event), pan: state.pan, turn: state.turn, tilt: state.tilt}; canvas.setPointerCapture(event.pointerId); });
@@ -224,12 +231,14 @@
     bar.className = 'bar';
     bar.id = 'colour-bar';
     bar.style.background = `linear-gradient(to right, ${data.map.slice(0, 256).filter((c, k) => k % 15 === 0).join(', ')})`;
-    $('key').append(`${data.colour.name}${data.colour.unit ? ', ' + data.colour.unit : ''}: ${+from.toPrecision(4)} `, bar, ` ${+to.toPrecision(4)}`);
-    const grey = document.createElement('span'), mark = document.createElement('i');
-    grey.className = 'keyed';
-    mark.style.background = data.map[kGrey];
-    grey.append(mark, 'not known');
-    $('key').append(' ', grey);
+    $('key').append(`${data.colour.name}${unit ? ', ' + unit : ''}: ${+from.toPrecision(4)} `, bar, ` ${+to.toPrecision(4)}`);
+    if (number.levels.some((level, k) => level === kAbsent && x.levels[k] !== kAbsent)) {
+      const grey = document.createElement('span'), mark = document.createElement('i');
+      grey.className = 'keyed';
+      mark.style.background = data.map[kGrey];
+      grey.append(mark, 'not known');
+      $('key').append(' ', grey);
+    }
   }
   $('hint').textContent = `Space: play or pause; arrows: one frame; wheel: zoom; drag: ${solid ? 'turn, with Shift move' : 'move'}; point at a bead for its numbers.`;
   document.body.classList.add('live');

@@ -192,6 +192,7 @@ void bind_box(py::module_& module) {
            header_text("trajectory/drive.hpp", "Drive::velocity"))
       .def("acceleration", &Drive::acceleration, py::arg("fraction"), py::arg("cycle") = 0,
            header_text("trajectory/drive.hpp", "Drive::acceleration"))
+      .def("at", &Drive::at, py::arg("cycles"), header_text("trajectory/drive.hpp", "Drive::at"))
       .def("__repr__", [](const Drive& d) {
         const bool sine = d.harmonics.empty() && !d.recorded && !d.ramp && !d.horizontal;
         return fmt::format("Drive(amplitude={:g}, omega={:g}{})", d.amplitude, d.omega,

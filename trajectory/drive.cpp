@@ -53,6 +53,11 @@ Waveform waveform(const std::vector<Harmonic>& harmonics, double fraction) {
                     [&](double n, const Harmonic& h) { return n * n * std::sin(angle_of(h, n, fraction)); })};
 }
 
+/// Upper bound of |w|.
+double waves_bound(const std::vector<Harmonic>& harmonics) {
+  return sum_over(harmonics, 1, [](double, const Harmonic&) { return 1.0; });
+}
+
 /// z = A w(theta) - (A - A_0) w(0) and its time derivatives.
 struct RampedPlate {
   double z, v, a;
@@ -142,7 +147,7 @@ std::int64_t Drive::cycle_at(double time, double fraction) const {
 
 double Drive::displacement_bound() const {
   if (recorded) return std::max(recorded->range().highest, -recorded->range().lowest);
-  const double waves = sum_over(harmonics, 1, [](double, const Harmonic&) { return 1.0; });
+  const double waves = waves_bound(harmonics);
   double bound = amplitude * waves;
   if (ramp) {
     const double most = std::max(amplitude, ramp->largest(0));
@@ -155,9 +160,14 @@ double Drive::velocity_bound() const {
   if (recorded) return recorded->range().speed;
   const double slopes = sum_over(harmonics, 1, [](double n, const Harmonic&) { return n; });
   double bound = amplitude * omega * slopes;
-  if (ramp)
-    bound = std::max(amplitude * omega, ramp->largest(1)) * slopes +
-            2 * ramp->rate_bound() * sum_over(harmonics, 1, [](double, const Harmonic&) { return 1.0; });
+  if (ramp) {
+    // v = A omega w' + A' (w - w(0)); of a sine the two terms are a quarter of a cycle apart.
+    const double by_phase = std::max(amplitude * omega, ramp->largest(1)) * slopes,
+                 by_ramp = ramp->rate_bound();
+    bound = harmonics.empty()
+                ? std::hypot(by_phase, by_ramp)
+                : by_phase + by_ramp * (waves_bound(harmonics) + std::abs(waveform(harmonics, 0).w));
+  }
   return horizontal ? std::hypot(bound, horizontal->amplitude * horizontal->ratio * omega) : bound;
 }
 

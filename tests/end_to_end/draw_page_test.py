@@ -31,7 +31,7 @@ BALLS = """[cell]
 dimension = 3
 width = 5.0
 depth = 4.0
-plates = "wall"
+plates = "walls"
 [beads]
 count = 30
 [drive]
@@ -53,7 +53,7 @@ def frame(browser):
 
 
 def table(program, trajectory, file):
-    """Frames of the trajectory as lists of rows, from the program's own table."""
+    """Frames of the trajectory as lists of rows, from the program's table, in which y points down."""
     run(program, "export", trajectory, "--to", "csv", "-o", file, "-q")
     frames = {}
     for row in csv.DictReader(open(file)):
@@ -76,14 +76,14 @@ def check_beads(browser, frames, number):
     assert low < high
     worst = 0
     for row in frames[number]:
-        speed = sum(float(row[v]) ** 2 for v in ("vx", "vz") if v in row) ** 0.5
+        speed = sum(float(row[v]) ** 2 for v in ("vx", "vy")) ** 0.5
         level = round(255 * (speed - low) / (high - low))
         wanted = [int(data["map"][level][k:k + 2], 16) for k in (1, 3, 5)]
-        seen = colour_at(browser, float(row["x"]), float(row["z"]))
+        seen = colour_at(browser, float(row["x"]), -float(row["y"]))
         worst = max(worst, *(abs(a - b) for a, b in zip(seen, wanted)))
     assert worst <= 6, f"a bead has another colour than its speed: {worst} of 255"
     assert int(browser.value("document.body.dataset.shown")) == len(frames[number])
-    top = max(float(row["z"]) for row in frames[number]) + 0.8
+    top = max(-float(row["y"]) for row in frames[number]) + 0.8
     assert browser.value(f"""(() => {{ const v = JSON.parse(document.getElementById('window').dataset.view), c = document.getElementById('cell');
       return c.getContext('2d').getImageData(Math.round(v.x * devicePixelRatio), Math.round((v.y - v.scale * ({top} - v.centre[2])) * devicePixelRatio), 1, 1).data[3] }})()""") == 0, "nothing is drawn above the bed"
 
@@ -100,9 +100,9 @@ def check_player(browser):
     assert frame(browser) == stopped, "paused"
     slide(browser, "frame", 5)
     browser.value("document.activeElement.blur()")
-    browser.key("ArrowRight", "ArrowRight")
+    browser.key("ArrowRight", 39)
     assert frame(browser) == 6
-    browser.key("ArrowLeft", "ArrowLeft")
+    browser.key("ArrowLeft", 37)
     assert frame(browser) == 5
     assert "cycle 0   phase 5/10   Gamma 2" in browser.value("document.getElementById('frame-label').textContent")
 
@@ -126,7 +126,7 @@ def check_hover(browser, frames):
     slide(browser, "frame", 5)
     row = frames[5][7]
     place = f"""(() => {{ const v = JSON.parse(document.getElementById('window').dataset.view), b = document.getElementById('cell').getBoundingClientRect();
-      return [b.x + v.x + v.scale * ({row['x']} - v.centre[0]), b.y + v.y - v.scale * ({row['z']} - v.centre[2])] }})()"""
+      return [b.x + v.x + v.scale * ({row['x']} - v.centre[0]), b.y + v.y - v.scale * ({-float(row['y'])} - v.centre[2])] }})()"""
     browser.middle("document.getElementById('cell')")
     x, y = browser.value(place)
     browser.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)

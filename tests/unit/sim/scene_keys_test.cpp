@@ -29,7 +29,7 @@ std::string told(const Assignments& assignments) {
   tell(s.radius, s.mass, s.inertia_factor, static_cast<int>(s.spread), s.spread_width);
   if (s.intruder) tell(s.intruder->radius, s.intruder->mass, s.intruder->x, s.intruder->y, s.intruder->z);
   tell(s.contact.normal, s.contact.tangential, s.contact.rolling, s.overlap_bound, s.drive.amplitude,
-       s.drive.omega, static_cast<int>(s.drive.axis), s.comoving, s.phase.value_or(0));
+       s.drive.omega, static_cast<int>(s.drive.axis), s.comoving, s.phase.value_or(0), s.drive.formula());
   for (const auto& [cycle, factor] : s.envelope.points) tell(cycle, factor);
   for (const Harmonic& harmonic : s.drive.harmonics) tell(harmonic.amplitude, harmonic.phase);
   tell(static_cast<int>(s.start), s.seed, s.from.string(), s.frame, s.in_motion, s.perturbation,
@@ -51,7 +51,9 @@ TEST(SceneKeys, ExamplesAreReadAndWhatIsOutOfRangeIsRefused) {
 
 TEST(SceneKeys, EveryKeyThatIsReadHasARow) {
   expect_a_row_for_every_query(scene_keys(), name_of);
-  expect_a_row_for_every_query_in({"sim/scene/scene.cpp", "sim/laws", "trajectory/drive.cpp"}, scene_keys());
+  expect_a_row_for_every_query_in(
+      {"sim/scene/scene.cpp", "sim/scene/drive_tables.cpp", "sim/laws", "trajectory/drive.cpp"},
+      scene_keys());
   std::set<std::string> rows;
   for (const KeyRow& row : scene_keys().rows) rows.insert(row.key);
   for (const std::string& key : all_law_keys()) EXPECT_TRUE(rows.contains("contact." + key)) << key;

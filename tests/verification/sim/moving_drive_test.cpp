@@ -72,14 +72,35 @@ TEST(Ramp, ABeadRidesOnAChirp) {
   validate({"V4.17", "chirp of 12 cycles at Gamma = 0.9: error of the plate's height in the frames, sigma", 0,
             1e-9, "A(t) sin of the integral of omega"},
            height);
-  validate({"V4.17", "bead on that chirp: difference of its velocity from the plate's, sigma/t0", 0, 1e-3,
+  validate({"V4.17", "bead on that chirp: difference of its velocity from the plate's, sigma/t0", 0, 5e-5,
             "derivative of that motion"},
            speed);
-  validate({"V4.17", "frames of that chirp: distance from their phase, cycles", 0, 5e-4, "half a step"},
+  validate({"V4.17", "frames of that chirp: distance from their phase, cycles", 0, 1e-4, "half a step"},
            late);
   EXPECT_GE(sampled, 238);  // time averages are those between frames
   const Frame& last = frames.frames().back();
   EXPECT_NEAR(last.time + (1 - 0.95) / 1.0, 2 + duration, 1e-2);
+}
+
+// A run that is stopped and goes on, here after every seventh frame, is the run itself to the bit.
+TEST(Ramp, ARunInPiecesIsTheRun) {
+  const std::string bed =
+      "[cell]\nwidth = 5.0\n[beads]\ncount = 12\n[drive]\ngamma = 1.5\nfrequency = "
+      "0.3\n[drive.ramp]\nfrequency "
+      "= 0.6\ngamma = 2.5\nreturn = true\n[time]\ndiscard = 1\ncycles = 2\nphases = 20\n";
+  const MemoryTrajectory whole = run(bed);
+  Simulation first(read_scene_text(bed, "s"));
+  MemoryTrajectory frames(first.trajectory_info());
+  first.run(frames, Progress::none(), 7);
+  Simulation second(read_scene_text(bed, "s"), first.state());
+  while (frames.n_frames() < 40) second.run(frames, Progress::none(), 7);
+  ASSERT_EQ(whole.n_frames(), 40);
+  for (std::size_t f = 0; f < 40; ++f) {
+    EXPECT_EQ(whole.frames()[f].step, frames.frames()[f].step);
+    EXPECT_EQ(whole.frames()[f].plate_height, frames.frames()[f].plate_height);
+    for (std::size_t i = 0; i < 12; ++i)
+      EXPECT_EQ(whole.frames()[f].position[i], frames.frames()[f].position[i]) << f << " " << i;
+  }
 }
 
 const std::string kBox =
@@ -106,9 +127,9 @@ TEST(HorizontalDrive, SideWallsCarryABead) {
   validate(
       {"V4.18", what + "distance from the middle of the cell, sigma", 0, 1e-4, "X sin(n omega t + 2 pi phi)"},
       off);
-  validate({"V4.18", what + "difference of velocities, sigma/t0", 0, 1e-3, "its derivative"}, faster);
-  validate({"V4.18", what + "error of the walls' force, m g", 0, 2e-2, "-X (n omega)^2 sin"}, force);
-  validate({"V4.18", what + "error of the plate's force, m g", 0, 2e-2, "1 - A omega^2 sin(omega t)"},
+  validate({"V4.18", what + "difference of velocities, sigma/t0", 0, 2e-4, "its derivative"}, faster);
+  validate({"V4.18", what + "error of the walls' force, m g", 0, 5e-4, "-X (n omega)^2 sin"}, force);
+  validate({"V4.18", what + "error of the plate's force, m g", 0, 5e-4, "1 - A omega^2 sin(omega t)"},
            weight);
 }
 
@@ -133,8 +154,8 @@ TEST(HorizontalDrive, FrictionRollsABeadOnThePlate) {
     }
     const std::string what =
         fmt::format("{} on a plate that moves along x: ", dimension == 2 ? "disc" : "sphere");
-    validate({"V4.18", what + "error of its velocity, sigma/t0", 0, 2e-3, "a = a_plate I/(I + m R^2)"}, off);
-    validate({"V4.18", what + "slip, sigma/t0", 0, 2e-3, "rolling without slip"}, spin);
+    validate({"V4.18", what + "error of its velocity, sigma/t0", 0, 2e-5, "a = a_plate I/(I + m R^2)"}, off);
+    validate({"V4.18", what + "slip, sigma/t0", 0, 2e-5, "rolling without slip"}, spin);
   }
 }
 
@@ -178,7 +199,8 @@ Vec3 force_of(const Frame& f) {
 // On a circle of radius 0.5 the walls hold the bead with a constant force that turns.
 TEST(HorizontalDrive, ACircleIsAConstantForceThatTurns) {
   double least = INFINITY, most = 0, off = 0;
-  for (const Frame& f : in_a_box(0.25).frames()) {
+  const MemoryTrajectory run = in_a_box(0.25);
+  for (const Frame& f : run.frames()) {
     least = std::min(least, force_of(f).norm());
     most = std::max(most, force_of(f).norm());
     const double angle = kTurn * f.phase / 40;
@@ -186,22 +208,23 @@ TEST(HorizontalDrive, ACircleIsAConstantForceThatTurns) {
     off = std::max(off, (r - Vec3(0.5 + 0.5 * std::cos(angle), r.y(), 0.5 + 0.5 * std::sin(angle))).norm());
   }
   const std::string what = "bead in a box on a circle of radius 0.5, omega = 2: ";
-  validate({"V4.18", what + "least force, m g", 2, 0.03, "m X omega^2"}, least);
-  validate({"V4.18", what + "largest force, m g", 2, 0.03, "m X omega^2"}, most);
+  validate({"V4.18", what + "least force, m g", 2, 5e-4, "m X omega^2"}, least);
+  validate({"V4.18", what + "largest force, m g", 2, 5e-4, "m X omega^2"}, most);
   validate({"V4.18", what + "distance from the circle, sigma", 0, 1e-4, "co-moving cell"}, off);
 }
 
 // In phase, the two motions are one along the diagonal: the force has no component across it.
 TEST(HorizontalDrive, InPhaseItIsATiltedVibration) {
   double along = 0, across = 0;
-  for (const Frame& f : in_a_box(0).frames()) {
+  const MemoryTrajectory run = in_a_box(0);
+  for (const Frame& f : run.frames()) {
     const Vec3 force = force_of(f);
     const double expected = -std::sqrt(2.0) * 2 * std::sin(kTurn * f.phase / 40);
     along = std::max(along, std::abs((force.x() + force.z()) / std::sqrt(2.0) - expected));
     across = std::max(across, std::abs(force.x() - force.z()));
   }
   const std::string what = "bead in a box that moves along its diagonal: ";
-  validate({"V4.18", what + "error of the force along it, m g", 0, 0.03, "-sqrt(2) m A omega^2 sin(omega t)"},
+  validate({"V4.18", what + "error of the force along it, m g", 0, 5e-4, "-sqrt(2) m A omega^2 sin(omega t)"},
            along);
   validate({"V4.18", what + "force across it, m g", 0, 1e-6, "symmetry"}, across);
 }
