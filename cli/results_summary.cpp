@@ -38,8 +38,7 @@ std::string results_summary(const std::vector<analysis::Result>& results, bool r
   std::size_t lists = 0, absent = 0;
   for (const analysis::Result& r : results) {
     if (r.present() && !r.text.empty())
-      (r.name == kVerdict ? text : other_words) +=
-          fmt::format("{}: {} ({})\n", r.name, r.text, r.convention);
+      (r.name == kVerdict ? text : other_words) += fmt::format("{}: {} ({})\n", r.name, r.text, r.convention);
     else if (requested || (r.present() && r.shape.empty()))
       rows += row(r);
     else

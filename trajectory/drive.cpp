@@ -302,6 +302,14 @@ DriveSpec read_drive_spec(const ConfigSection& drive) {
           drive.number_in("gamma", 0),     drive.number_in("k_m", 0), drive.number_in("peak_velocity", 0)};
 }
 
+bool is_whole(const DriveSpec& spec) {
+  int independent = 0;
+  for (const bool stated : {spec.amplitude.has_value(), spec.omega || spec.frequency, spec.gamma.has_value(),
+                            spec.k_m || spec.peak_velocity})
+    independent += stated ? 1 : 0;
+  return independent >= 2;
+}
+
 Drive solve_drive(const DriveSpec& spec, double gravity, const Where& where, Axis axis) {
   const auto terms = terms_of(spec, gravity, where);
   // The exponents of two independent numbers form an invertible 2 x 2 matrix in (ln A, ln omega).

@@ -132,6 +132,10 @@ struct DriveSpec {
   std::optional<double> peak_velocity;  ///< A omega
 };
 
+/// Whether the numbers of a DriveSpec determine A and omega: at least two independent ones are stated (omega
+/// and frequency are one, and so are K_m and the peak velocity).
+bool is_whole(const DriveSpec& spec);
+
 /// The harmonics as the value of the key `harmonics`: "[[0.1, 0.25], [0.02, 0]]", to the last bit.
 std::string harmonics_text(const std::vector<Harmonic>& harmonics);
 /// Reads `harmonics` of the `[drive]` table of a scene or a cell. \throws ConfigError for more than

@@ -17,15 +17,9 @@
 namespace twincell::calibration {
 namespace {
 
-/// Number of stated drive quantities other than the amplitude.
-int stated(const DriveSpec& s) {
-  int n = 0;
-  for (const auto& number : {s.omega, s.frequency, s.gamma, s.k_m, s.peak_velocity}) n += number ? 1 : 0;
-  return n;
-}
-
-bool is_whole(const DriveSpec& s) {
-  return stated(s) + (s.amplitude ? 1 : 0) >= 2;
+/// Whether a quantity of the drive other than the amplitude is stated.
+bool states_more_than_amplitude(const DriveSpec& s) {
+  return s.omega || s.frequency || s.gamma || s.k_m || s.peak_velocity;
 }
 
 /// Pixels per sigma: as stated, else from the distance of the walls.
@@ -88,7 +82,7 @@ std::string complete_drive(imaging::CellDescription& cell, bool phases,
       spec.amplitude = lock.amplitude / scale;
       said += fmt::format(" A = {:.5g} +- {:.2g} sigma", *spec.amplitude, lock.amplitude_error / scale);
     }
-    if (stated(spec) == 0) {
+    if (!states_more_than_amplitude(spec)) {
       const auto rate = frame_rate_of(cell.frame_rate_hz, edges, stack);
       const auto t0 = cell.scale.t0_s();
       if (!rate || !t0)

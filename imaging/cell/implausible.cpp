@@ -12,12 +12,8 @@ ShakenCell shaken_cell(const CellDescription& cell) {
   ShakenCell numbers;
   if (cell.scale.sigma_m) numbers.sigma_mm = *cell.scale.sigma_m * 1e3;
   numbers.gamma = cell.drive_spec.gamma;
-  std::optional<Drive> drive;
-  try {
-    drive = cell.drive();
-  } catch (const ConfigError&) {
-    return numbers;  // stated in part: the film gives the rest
-  }
+  if (!is_whole(cell.drive_spec)) return numbers;  // the film gives the rest
+  const std::optional<Drive> drive = cell.drive();
   if (!drive) return numbers;
   numbers.gamma = drive->gamma();
   if (const auto t0 = cell.scale.t0_s()) numbers.frequency_hz = drive->omega / (2 * std::numbers::pi * *t0);

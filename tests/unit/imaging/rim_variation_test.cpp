@@ -70,7 +70,8 @@ TEST(RimVariation, OfRimsThatAreNotSeenIsNone) {
 // Fragments that are taken for a second size are not hidden by the discs of the first.
 TEST(RimVariation, IsThatOfTheLeastRoundSize) {
   cv::Mat1f grey = objects(circle, 1);
-  objects(polygon(3, 0.5 * kRadius), 1)(cv::Rect(0, 0, kSide, kPitch)).copyTo(grey(cv::Rect(0, 0, kSide, kPitch)));
+  objects(polygon(3, 0.5 * kRadius), 1)(cv::Rect(0, 0, kSide, kPitch))
+      .copyTo(grey(cv::Rect(0, 0, kSide, kPitch)));
   std::vector<Detection> both = discs(kRadius);
   for (std::size_t k = 0; k < both.size(); ++k)
     if (k < kSide / kPitch) both[k].radius = 0.6 * kRadius;

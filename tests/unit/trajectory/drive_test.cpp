@@ -36,6 +36,16 @@ TEST(Drive, EveryIndependentPairGivesTheSameDrive) {
   EXPECT_NO_THROW(solve_drive(all, 1, {}));
 }
 
+TEST(Drive, TwoIndependentNumbersAreWhole) {
+  EXPECT_FALSE(is_whole({}));
+  EXPECT_FALSE(is_whole({.gamma = 2}));
+  EXPECT_FALSE(is_whole({.omega = 1, .frequency = 1 / (2 * std::numbers::pi)}));
+  EXPECT_FALSE(is_whole({.k_m = 4, .peak_velocity = 2}));
+  EXPECT_TRUE(is_whole({.amplitude = 2, .gamma = 2}));
+  EXPECT_TRUE(is_whole({.omega = 1, .k_m = 4}));
+  EXPECT_TRUE(is_whole({.gamma = 2, .peak_velocity = 2}));
+}
+
 TEST(Drive, ContradictionAndShortageAreNamed) {
   const Where where{"scene.toml", 7, 1, "drive"};
   try {
