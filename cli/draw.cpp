@@ -93,10 +93,11 @@ void run(DrawOptions& o, const Common& common) {
 
 void add_draw(CLI::App& program, Common& common) {
   auto o = std::make_shared<DrawOptions>();
-  CLI::App& verb = add_verb(program, common, "draw",
-                            "Draw a trajectory as a picture, a film or a page that plays in a browser: beads "
-                            "coloured by a number, the cell, tracks, velocities and contact forces.",
-                            "twincell draw sim.h5 -o film.mp4 --colour speed");
+  CLI::App& verb = add_verb(
+      program, common, "draw",
+      "Draw a trajectory as a picture, a film or a page that plays in a browser: beads "
+      "coloured by a number, the cell, tracks, velocities and contact forces.",
+      "twincell draw sim.h5 -o film.mp4 --colour speed\n  twincell draw sim.h5 -o page.html --colour speed");
   verb.add_option("trajectory", o->trajectory, "Trajectory file (H5MD)")->required();
   // Whether it is a picture, a film or a page depends on the name; run() checks what may be replaced.
   common.outputs.push_back({verb.add_option("-o,--output", o->job.output,

@@ -77,11 +77,11 @@ void check(const TrajectorySource& source, const imaging::DrawJob& job, std::siz
   if (size > kLargestPage)
     throw ConfigError(
         {.file = source.name(), .key = "--frames"},
-        fmt::format("{} of {} make a page of {:.3g} MB, the bound is {:g} MB; choose every {}th frame with a "
-                    "STEP, as in A:B:STEP.",
-                    counted(frames, "frame"), counted(source.info().n_beads, "bead"), size / 1e6,
-                    kLargestPage / 1e6,
-                    static_cast<std::int64_t>(std::ceil(size / kLargestPage)) * job.frames.step));
+        fmt::format(
+            "{} of {} make a page of {:.3g} MB, the bound is {:g} MB; choose fewer by a STEP of at least "
+            "{}, as in A:B:STEP.",
+            counted(frames, "frame"), counted(source.info().n_beads, "bead"), size / 1e6, kLargestPage / 1e6,
+            static_cast<std::int64_t>(std::ceil(size / kLargestPage)) * job.frames.step));
 }
 
 const char* boundary_word(Boundary b) {

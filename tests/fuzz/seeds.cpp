@@ -18,6 +18,9 @@ void save_trajectory(const std::filesystem::path& file, bool full) {
   if (full) {
     info.columns = {.velocity = true, .spin = true, .identity = true, .phase = true, .plate_height = true};
     info.drive = Drive{Axis::z, 1.5, 1.0};
+    info.drive->ramp =
+        DriveRamp{.from = {1.5, 1}, .to = {2, 1.5}, .power = 2, .first = 1, .cycles = 4, .returns = true};
+    info.drive->horizontal = HorizontalMotion{.amplitude = 0.5, .ratio = 2, .phase = 0.25};
     info.phases_per_cycle = 2;
     info.columns.contact_forces = true;
     info.walls = {"bottom"};

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "tests/support/complaint.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "trajectory/drive.hpp"
 #include "trajectory/formats/h5md_file.hpp"
@@ -169,19 +170,58 @@ TEST(HorizontalMotion, IsAlongXBesideTheVerticalOne) {
   EXPECT_NEAR(drive.displacement_bound(), 0.5, 1e-15);
 }
 
-TEST(DriveMotionGroup, RampAndHorizontalMotionSurviveAFile) {
-  const TemporaryFolder folder;
+/// A file with one bead at rest and this drive.
+void write(const std::filesystem::path& file, const Drive& drive) {
   TrajectoryInfo info;
   info.n_beads = 1;
-  Drive drive =
-      drive_of({.from = {0.8, 1.25}, .to = {1.1, 3.5}, .power = 2, .first = 3, .cycles = 8, .returns = true});
-  drive.horizontal = HorizontalMotion{.amplitude = 0.4, .ratio = 3, .phase = 0.1};
   info.drive = drive;
-  H5mdWriter writer(folder / "t.h5", info);
+  H5mdWriter writer(file, info);
   Frame frame;
   frame.position = {Vec3(0, 0, 0)};
   writer.append(frame);
   writer.finish();
+}
+
+TEST(DriveMotionGroup, NumbersThatNoDriveHasAreRefused) {
+  const TemporaryFolder folder;
+  const DriveRamp good{.from = {0.8, 1.25}, .to = {1.1, 3.5}, .power = 2, .first = 3, .cycles = 8};
+  const auto said = [&](const Drive& drive) {
+    write(folder / "t.h5", drive);
+    const std::string complaint = complaint_of([&] { H5mdReader(folder / "t.h5"); });
+    std::filesystem::remove(folder / "t.h5");
+    return complaint;
+  };
+  EXPECT_EQ(said(drive_of(good)), "");
+  const auto ramp = [&](auto change) {
+    DriveRamp bad = good;
+    change(bad);
+    return said(drive_of(bad));
+  };
+  const std::string where = "t.h5: parameters/drive/ramp: its ";
+  EXPECT_NE(ramp([](DriveRamp& r) { r.to.omega = 0; }).find(where + "omega is 0"), std::string::npos);
+  EXPECT_NE(ramp([](DriveRamp& r) { r.to.amplitude = -1; }).find(where + "amplitude is -1"),
+            std::string::npos);
+  EXPECT_NE(ramp([](DriveRamp& r) { r.to.amplitude = std::nan(""); }).find(where + "amplitude is nan"),
+            std::string::npos);
+  EXPECT_NE(ramp([](DriveRamp& r) { r.power = 3; }).find(where + "power is 3"), std::string::npos);
+  EXPECT_NE(ramp([](DriveRamp& r) { r.cycles = 0.5; }).find(where + "cycles is 0.5"), std::string::npos);
+  EXPECT_NE(ramp([](DriveRamp& r) { r.first = -1; }).find(where + "first is -1"), std::string::npos);
+  EXPECT_NE(ramp([](DriveRamp& r) { r.from.omega = 0; }).find("has a ramp, but its omega is 0"),
+            std::string::npos);
+  Drive sideways{.amplitude = 1, .omega = 1};
+  for (const HorizontalMotion bad : {HorizontalMotion{-1, 1, 0}, HorizontalMotion{1, 0, 0},
+                                     HorizontalMotion{1, 32, 0}, HorizontalMotion{1, 1, 1.5}}) {
+    sideways.horizontal = bad;
+    EXPECT_NE(said(sideways).find("t.h5: parameters/drive/horizontal: its "), std::string::npos);
+  }
+}
+
+TEST(DriveMotionGroup, RampAndHorizontalMotionSurviveAFile) {
+  const TemporaryFolder folder;
+  Drive drive =
+      drive_of({.from = {0.8, 1.25}, .to = {1.1, 3.5}, .power = 2, .first = 3, .cycles = 8, .returns = true});
+  drive.horizontal = HorizontalMotion{.amplitude = 0.4, .ratio = 3, .phase = 0.1};
+  write(folder / "t.h5", drive);
   const Drive read = *H5mdReader(folder / "t.h5").info().drive;
   ASSERT_TRUE(read.ramp && read.horizontal);
   EXPECT_EQ(read.ramp->from, drive.ramp->from);
