@@ -79,6 +79,8 @@ std::vector<Window> analyze_windows(const TrajectorySource& trajectory, const An
   if (cycles < 1) throw ConfigError(where, fmt::format("a window of {} cycles is empty; at least 1", cycles));
   if (options.cycles > 0)
     throw ConfigError({.file = {}, .key = "cycles"}, "chooses cycles, but the windows cover all of them");
+  if (trajectory.n_frames() == 0)
+    throw InputError({.file = trajectory.name(), .key = {}}, "the trajectory contains no frame");
   if (!trajectory.info().columns.phase)
     throw ConfigError(where, "the frames of the trajectory have no cycle number");
   const std::vector<Place> places = places_of(trajectory, options.discard_cycles, cycles);
