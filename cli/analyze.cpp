@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -15,6 +14,7 @@
 #include "analysis/observable/results.hpp"
 #include "analysis/observable/timed_analysis.hpp"
 #include "analysis/report/spatial_figures.hpp"
+#include "analysis/report/windows_figure.hpp"
 #include "analysis/runs/pooling.hpp"
 #include "analysis/runs/windows.hpp"
 #include "cli/output.hpp"
@@ -48,6 +48,12 @@ Product figure_folder() {
   return Product::whole_folder("the figures of an analysis");
 }
 
+void draw_into(const std::vector<analysis::Figure>& figures, const std::string& place) {
+  AtomicPath folder(place, figure_folder());
+  for (const analysis::Figure& figure : figures) analysis::draw(figure, folder.part());
+  folder.commit();
+}
+
 /// Returns the number in `said`, or the mean height of the centre of mass above the plate in the trajectory
 /// that `said` names, which must show a bed at rest.
 double rest_height_of(const std::string& said) {
@@ -76,9 +82,6 @@ double rest_height_of(const std::string& said) {
   return sum / static_cast<double>(trajectory.n_frames());
 }
 
-/// Numbers that the table of windows shows if no result is requested by name.
-constexpr std::array kWindowNumbers = {"s_b", "s_c", "q6"};
-
 nlohmann::json as_json(const std::vector<analysis::Window>& windows) {
   nlohmann::json list = nlohmann::json::array();
   for (const analysis::Window& w : windows) {
@@ -99,8 +102,8 @@ nlohmann::json as_json(const std::vector<analysis::Window>& windows) {
 std::string as_text(const std::vector<analysis::Window>& windows, const std::vector<std::string>& only) {
   std::vector<std::string> names;
   for (const analysis::Result& r : windows.front().results) {
-    const bool usual =
-        std::find(kWindowNumbers.begin(), kWindowNumbers.end(), r.name) != kWindowNumbers.end();
+    const bool usual = std::find(std::begin(analysis::kWindowNumbers), std::end(analysis::kWindowNumbers),
+                                 r.name) != std::end(analysis::kWindowNumbers);
     if (r.shape.empty() && r.name != "phase" && (only.empty() ? usual : true)) names.push_back(r.name);
   }
   const bool phase = analysis::seek_result(windows.front().results, "phase") != nullptr;
@@ -140,8 +143,6 @@ void run_windows(const Common& common, const AnalyzeOptions& options) {
   };
   if (options.trajectories.size() > 1)
     refuse("--window-cycles", "divides one trajectory into windows; several were given.");
-  if (!options.figures.empty())
-    refuse("--figures", "draws a whole run; with --window-cycles, use --table FILE.csv.");
   if (options.profile) refuse("--profile", "measures one analysis; --window-cycles makes several.");
   if (!options.output.empty())
     refuse("--output",
@@ -158,6 +159,10 @@ void run_windows(const Common& common, const AnalyzeOptions& options) {
   if (!options.table.empty()) {
     write_text_file(options.table, analysis::windows_csv(windows), window_table());
     text += options.table + "\n";
+  }
+  if (!options.figures.empty()) {
+    draw_into(analysis::windows_figures(windows, options.analysis.only), options.figures);
+    text += options.figures + "\n";
   }
   print_result(common,
                {{"windows", as_json(windows)}, {"provenance", nlohmann::json::parse(provenance.to_json())}},
@@ -197,11 +202,7 @@ void run(const Common& common, const AnalyzeOptions& options) {
   }
   if (!options.figures.empty()) {
     const Stage drawing(profile.times(), "figures");
-    AtomicPath folder(options.figures, figure_folder());
-    for (const analysis::Figure& figure :
-         analysis::spatial_figures(results, *readers.front(), options.analysis))
-      analysis::draw(figure, folder.part());
-    folder.commit();
+    draw_into(analysis::spatial_figures(results, *readers.front(), options.analysis), options.figures);
   }
 
   nlohmann::json document;
@@ -234,7 +235,8 @@ void add_analyze(CLI::App& program, Common& common) {
   writes(common, verb,
          verb.add_option("--figures", options->figures,
                          "Draw the lattice, the convection field, the profiles and the defects into this "
-                         "folder; for one trajectory only"),
+                         "folder, with --window-cycles the results against the drive; for one trajectory "
+                         "only"),
          figure_folder());
   verb.add_option("--discard", options->analysis.discard_cycles, "Number of cycles skipped at the start")
       ->capture_default_str();

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "analysis/report/windows_figure.hpp"
 #include "tests/support/complaint.hpp"
 
 namespace twincell::analysis {
@@ -69,6 +70,22 @@ TEST(Windows, AChangingDriveNeedsThem) {
                   .absent.find("drive.ramp"),
               std::string::npos)
         << name;
+}
+
+TEST(Windows, TheirFigureHasBothDirections) {
+  MemoryTrajectory run = ramped_run();
+  run.info().drive->ramp->returns = true;  // Gamma 1 to 2 in 5 cycles, and back
+  const std::vector<Figure> figures = windows_figures(analyze_windows(run, {.only = {"h_cm"}}, 1), {"h_cm"});
+  ASSERT_EQ(figures.size(), 1U);
+  const std::string& data = figures.front().data;
+  EXPECT_EQ(figures.front().name, "windows_h_cm");
+  // Gamma in the middle of a cycle, and the height of that cycle.
+  const std::size_t falling = data.find("# falling");
+  EXPECT_LT(data.find("\n1.1 1 "), falling) << data;
+  EXPECT_LT(data.find("\n1.9 1.4 "), falling) << data;
+  EXPECT_GT(data.find("\n1.9 1.5 "), falling) << data;
+  EXPECT_NE(data.find("\n1.1 1.9 "), std::string::npos) << data;
+  EXPECT_NE(figures.front().plot.find("'falling'"), std::string::npos);
 }
 
 TEST(Windows, ImpossibleOnesAreRefused) {
