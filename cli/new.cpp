@@ -53,7 +53,8 @@ void keep_earlier(const fs::path& cell, const Common& common) {
         "name another one with -o.");
 }
 
-/// Asks one question on the terminal. An empty line, or the end of the input, leaves the value unknown.
+/// Asks one question on the terminal. An empty line, or the end of the input, leaves the value unknown. The
+/// answer may have a decimal comma.
 std::optional<double> ask(const std::string& question, const std::string& otherwise) {
   for (;;) {
     std::cerr << question << " [" << otherwise << "]: " << std::flush;
@@ -61,6 +62,8 @@ std::optional<double> ask(const std::string& question, const std::string& otherw
     if (!std::getline(std::cin, line)) return std::nullopt;
     const std::size_t from = line.find_first_not_of(" \t\r"), to = line.find_last_not_of(" \t\r");
     if (from == std::string::npos) return std::nullopt;
+    if (const std::size_t comma = line.find(','); comma != std::string::npos && line.find('.') == std::string::npos)
+      line[comma] = '.';
     double value = 0;
     const char *begin = line.data() + from, *end = line.data() + to + 1;
     if (const auto [last, error] = std::from_chars(begin, end, value);

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -69,6 +70,19 @@ std::int64_t now_ns() {
 
 constexpr int kBarWidth = 30;
 
+/// Refuses the ending of another format for a trajectory, which would be taken for a file of that format.
+void refuse_other_format(const std::filesystem::path& name, const Product& product) {
+  constexpr std::array kOthers = {".csv", ".xyz", ".json", ".toml", ".png", ".tif", ".mp4", ".avi", ".mat"};
+  const std::string extension = name.extension().string();
+  if (product.sign == Product::Sign::h5md_creator &&
+      std::find(kOthers.begin(), kOthers.end(), extension) != kOthers.end())
+    throw ConfigError(
+        {.file = name.string(), .key = {}},
+        fmt::format("the output is a trajectory (HDF5) and cannot end in {}; name a .h5 file, from "
+                    "which twincell export makes other formats.",
+                    extension));
+}
+
 /// Registers the inputs of the verb, then checks its outputs against the output rules and locks them.
 void guard_outputs(const CLI::App& verb, Common& common) {
   replace_by_force(common.force);
@@ -90,6 +104,7 @@ void guard_outputs(const CLI::App& verb, Common& common) {
   for (const Output& output : common.outputs) {
     if (output.verb != &verb || output.option->count() == 0) continue;
     const std::string name = output.option->as<std::string>();
+    refuse_other_format(name, output.product);
     const std::filesystem::path final = require_output(name, output.product);
     if (std::find(taken.begin(), taken.end(), final) != taken.end())
       throw ConfigError({.file = name, .key = {}}, "two outputs of one command have this name.");

@@ -183,7 +183,7 @@ void track_experiment(imaging::FrameSource& frames, FilmedCell& filmed, calibrat
   if (checks_drive(filmed, options) && check.by.empty()) {
     calibration::BedSteps bed(plan.info);
     imaging::write_trajectory(stack, plan, bed);
-    check = calibration::check_by_bed(bed, plan.info, check.frame_rate_hz);
+    check = calibration::check_by_bed(bed, plan.info, check);
     require_agreement(check, options);
   }
   if (filmed.drive.empty()) calibration::record(check, plan.info);

@@ -201,6 +201,37 @@ DriveFit motion_of_plate(const imaging::CellDescription& cell, const StackEdges&
              : *as_stated;
 }
 
+/// The cell file of another stack: an edge follows a sine as cleanly as only a plate does, but neither where
+/// the cell states the plate nor with the stated amplitude. A bed whose plate is out of the picture follows
+/// no clean sine while it flies, and has the amplitude of the plate while it lies on it.
+void look_for_plate_elsewhere(DriveCheck& check, const imaging::CellDescription& cell,
+                              const StackEdges& edges, double stated) {
+  constexpr double kClean = 0.02, kSeen = 0.95, kLeast_px = 1;  // of the amplitude; of the frames
+  if (!cell.origin) return;
+  imaging::CellDescription anywhere = cell;
+  anywhere.origin.reset();
+  anywhere.phase_lock = {};
+  try {
+    const auto [geometry, seen] = plate_in_picture(anywhere, edges);
+    if (seen.amplitude < kLeast_px || seen.rms > kClean * seen.amplitude ||
+        static_cast<double>(seen.locked) < kSeen * static_cast<double>(geometry.heights.size()))
+      return;
+    const double scale = *cell.pixels_per_sigma;
+    DriveCheck found;
+    found.amplitude = seen.amplitude / scale;
+    found.amplitude_error = seen.amplitude_error / scale;
+    compare_amplitude(
+        found,
+        fmt::format("the plate in the frames, at row {:.1f} where camera.origin_px states {:.1f},",
+                    geometry.plate_row - seen.z0, cell.origin->y_px),
+        stated, kShare, scale);
+    check.plate_elsewhere = found.disagreement;
+    check.amplitude = found.amplitude;
+    check.amplitude_error = found.amplitude_error;
+  } catch (const InputError&) {  // no edge moves as a plate does
+  }
+}
+
 }  // namespace
 
 void record(const DriveCheck& check, TrajectoryInfo& info) {
@@ -242,6 +273,7 @@ DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::files
     compare_omega(check, what, seen, drive->omega, cell.scale.t0_s());
   } catch (const InputError& e) {  // no plate in the picture, or it does not move
     check.not_comparable = e.what();
+    look_for_plate_elsewhere(check, cell, edges, drive->amplitude);
   }
   if (fixed_phases) compare_frame_rate(check, cell, drive->omega);
   return check;
@@ -269,6 +301,16 @@ DriveCheck check_by_bed(const BedSteps& bed, const TrajectoryInfo& info,
                   info.drive->omega, info.scale.t0_s());
   } catch (const InputError&) {  // the amplitude was found, the period cannot be fitted
   }
+  return check;
+}
+
+DriveCheck check_by_bed(const BedSteps& bed, const TrajectoryInfo& info, const DriveCheck& by_plate) {
+  DriveCheck check = check_by_bed(bed, info, by_plate.frame_rate_hz);
+  if (!check.by.empty() || by_plate.plate_elsewhere.empty()) return check;
+  check.by = "plate";
+  check.amplitude = by_plate.amplitude;
+  check.amplitude_error = by_plate.amplitude_error;
+  check.disagreement = by_plate.plate_elsewhere;
   return check;
 }
 

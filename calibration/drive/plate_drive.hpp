@@ -35,6 +35,8 @@ struct DriveCheck {
   std::string not_comparable;                 ///< why the drive was not measured; empty if it was
   double amplitude = 0, amplitude_error = 0;  ///< measured, sigma
   std::optional<double> frame_rate_hz;        ///< of the film, if known
+  /// A clause: an edge moves as a plate does, but neither at the stated place nor with the stated amplitude.
+  std::string plate_elsewhere;
 };
 /// Adds the check to the tracking metadata of a trajectory: "drive_check" with "by", "amplitude",
 /// "amplitude_error" or with "not_comparable", and "drive_disagreement" if there is one. `compare` refuses a
@@ -56,5 +58,10 @@ DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::files
 /// standard errors, 10 % and 0.3 px. omega is compared if frame rate and scale are known; a difference counts
 /// above five standard errors and 3 %. \pre `info` states the drive
 DriveCheck check_by_bed(const BedSteps& bed, const TrajectoryInfo& info, std::optional<double> frame_rate_hz);
+
+/// The same after check_by_plate, which found no plate where the cell states it. If the bed cannot be
+/// compared either, a plate elsewhere counts as a difference: the cell file is that of another stack. \pre as
+/// above
+DriveCheck check_by_bed(const BedSteps& bed, const TrajectoryInfo& info, const DriveCheck& by_plate);
 
 }  // namespace twincell::calibration

@@ -42,7 +42,7 @@ TrackedFilm track_film(
     if (check.by.empty() && check.disagreement.empty() && cell.pixels_per_sigma) {
       BedSteps bed(plan.info);
       imaging::write_trajectory(stack, plan, bed);
-      check = check_by_bed(bed, plan.info, check.frame_rate_hz);
+      check = check_by_bed(bed, plan.info, check);
     }
   }
   if (plan.info.drive) record(check, plan.info);

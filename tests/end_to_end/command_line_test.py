@@ -82,6 +82,8 @@ def test_next_steps():
         (("track", frames), 2, "--output is required; example: twincell track frames/ -o exp.h5"),
         (("export", scene, "--to", "lamps", "-o", out), 2, "'lamps' is not lammps, xyz,"),
         (("export", scene, "--to", "lamps", "-o", out), 2, "; did you mean 'lammps'?"),
+        (("simulate", scene, "-o", folder / "run.csv"), 2,
+         "the output is a trajectory (HDF5) and cannot end in .csv; name a .h5 file, from which twincell export"),
         (("sweep", "plan.toml"), 2, "there is no verb 'sweep plan.toml'; sweep has plan, run, "),
         (("calibrate",), 2, "calibrate needs a word that says what: camera, walls, plate, beads or contacts."),
     ):

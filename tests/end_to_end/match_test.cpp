@@ -308,6 +308,30 @@ TEST(Match, AStatedDriveIsHeldAgainstThePlate) {
   EXPECT_EQ(trusted.code, 0) << trusted.err;
 }
 
+// The cell of another camera and another strength: the plate is 45 px from its stated row.
+TEST(Match, TheCellFileOfAnotherStackIsRefused) {
+  const TemporaryFolder folder;
+  const fs::path cell = folder / "other.toml";
+  {
+    std::ifstream in(kStack / "CELL.toml");
+    std::ofstream out(cell);
+    for (std::string line; std::getline(in, line);)
+      out << (line.starts_with("amplitude")   ? "amplitude = 1.6"
+              : line.starts_with("origin_px") ? "origin_px = [20, 230.8]"
+                                              : line)
+          << "\n";
+  }
+  const Ran refused = run_program({"match", kStack, cell, "-o", folder / "twin", "--twins", "1", "--no-film",
+                                   "--set", "time.steps_per_contact=20", "-q"});
+  EXPECT_EQ(refused.code, 2) << refused.err;
+  const auto seen = refused.err.find("A = ");
+  ASSERT_NE(seen, std::string::npos) << refused.err;
+  EXPECT_NEAR(std::stod(refused.err.substr(seen + 4)), 0.9, 0.002) << refused.err;
+  EXPECT_NE(refused.err.find("where camera.origin_px states 230.8"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("but the cell states 1.6"), std::string::npos) << refused.err;
+  EXPECT_FALSE(fs::exists(folder / "twin/experiment.h5"));
+}
+
 TEST(Match, AStatedDriveIsHeldAgainstTheBedWhereThePlateIsNotInThePicture) {
   for (const double gamma : {0.9, 1.6}) {
     const TemporaryFolder folder;

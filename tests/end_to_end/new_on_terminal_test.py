@@ -39,7 +39,7 @@ with tempfile.TemporaryDirectory(dir=scratch) as folder:
         assert process.returncode == 0, out
         return b"".join(heard).decode(), out, (home / name).read_text()
 
-    heard, out, text = asked("asked.toml", b"two\n2\n11.15\n")
+    heard, out, text = asked("asked.toml", b"two\n2\n11,15\n")
     assert "Diameter of a bead in mm" in heard and "Frequency of the shaker in Hz" in heard, heard
     assert "A number above 0 is needed" in heard, heard
     assert "FILL IN" not in text and "sigma_mm = 2 " in text and "frequency_hz = 11.15" in text, text

@@ -1,6 +1,7 @@
 // A folder of pictures, in natural order of their names.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -76,6 +77,28 @@ class Folder final : public FrameSource {
   StackInfo info_;
 };
 
+/// "; its folder frames does", for a folder above that of the pictures.
+std::string folders_with_pictures(const fs::path& folder, const std::string& pictures) {
+  constexpr std::size_t kNamed = 3;
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator below(folder, error), end; !error && below != end; below.increment(error)) {
+    std::error_code ignored;
+    if (!below->is_directory(ignored)) continue;
+    for (fs::directory_iterator file(*below, ignored); !ignored && file != end; file.increment(ignored))
+      if (is_listed(pictures, file->path())) {
+        names.push_back(below->path().filename().string());
+        break;
+      }
+  }
+  if (names.empty()) return {};
+  std::sort(names.begin(), names.end(), natural_less);
+  const std::string more = names.size() > kNamed ? ", …" : "";
+  names.resize(std::min(names.size(), kNamed));
+  return names.size() == 1 ? fmt::format("; its folder {} does", names.front())
+                           : fmt::format("; its folders {}{} do", fmt::join(names, ", "), more);
+}
+
 }  // namespace
 
 std::unique_ptr<FrameSource> open_folder(const fs::path& folder) {
@@ -99,7 +122,8 @@ std::unique_ptr<FrameSource> open_folder(const fs::path& folder) {
   if (error) refuse(folder, "cannot be listed: " + error.message() + ".");
   if (files.empty())
     refuse(folder, stack.empty()
-                       ? "holds no PNG, TIFF, JPEG, BMP or PGM picture."
+                       ? fmt::format("holds no PNG, TIFF, JPEG, BMP or PGM picture{}.",
+                                     folders_with_pictures(folder, pictures))
                        : fmt::format("holds no PNG, TIFF, JPEG, BMP or PGM picture; it holds {}: name that "
                                      "file.",
                                      stack));

@@ -126,6 +126,17 @@ TEST(SpoiltFrames, NothingToRead) {
   expect_words(refusal(folder / "folder.png"), {"folder.png", "holds no PNG"});
 }
 
+TEST(SpoiltFrames, TheFoldersBelowThatHoldPicturesAreNamed) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "notes");
+  fs::create_directory(folder / "gamma-10");
+  write(folder / "gamma-10/f.png", cv::Mat1b(8, 8, uchar{7}));
+  expect_words(refusal(folder.path()), {"holds no PNG", "; its folder gamma-10 does."});
+  fs::create_directory(folder / "gamma-2");
+  write(folder / "gamma-2/f.tif", cv::Mat1b(8, 8, uchar{7}));
+  expect_words(refusal(folder.path()), {"; its folders gamma-2, gamma-10 do."});
+}
+
 TEST(SpoiltFrames, MixedSizesAreNamedWithTheirFiles) {
   const TemporaryFolder folder;
   write(folder / "f1.png", pattern<uchar>(8, 6));
