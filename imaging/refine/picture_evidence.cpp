@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <numeric>
+#include <span>
 
 #include "core/median.hpp"
 
@@ -35,6 +37,12 @@ struct Place {
   double part;
 };
 
+/// A level, among those of all sizes, and its share in a pixel.
+struct Term {
+  Eigen::Index level;
+  double share;
+};
+
 class Explanation {
  public:
   Explanation(const cv::Mat1f& grey, const std::vector<Detection>& discs, const std::vector<double>& radii,
@@ -60,6 +68,7 @@ class Explanation {
     amplitude_.assign(discs.size(), 1);
     offset_.assign(discs.size(), 0);
     share_pixels();
+    collect_terms();
   }
 
   PictureEvidence evidence() {
@@ -104,33 +113,40 @@ class Explanation {
     out_ = nearest;
   }
 
-  /// Fits the levels of all profiles, and in the first round a common ground, by weighted least squares.
-  void learn_profiles(bool first) {
-    struct Term {
-      std::size_t level;
-      double share;
-    };
-    // The terms of each pixel, from all discs that reach it.
-    std::vector<std::vector<Term>> terms(grey_.total());
+  [[nodiscard]] std::size_t pixel_at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(grey_.cols) + static_cast<std::size_t>(x);
+  }
+
+  /// The levels of which each pixel is the sum, from all discs that reach it.
+  void collect_terms() {
+    first_term_.assign(grey_.total() + 1, 0);
+    for (const Detection& d : discs_)
+      over(d, [&](int x, int y, double) { first_term_[pixel_at(x, y) + 1] += 2; });
+    std::partial_sum(first_term_.begin(), first_term_.end(), first_term_.begin());
+    terms_.resize(first_term_.back());
+    std::vector<std::size_t> next(first_term_.begin(), first_term_.end() - 1);
     for (std::size_t b = 0; b < discs_.size(); ++b) {
       const Size& s = sizes_[size_of_[b]];
       over(discs_[b], [&](int x, int y, double out) {
         const Place p = place(s, out);
-        auto& list = terms[static_cast<std::size_t>(y) * static_cast<std::size_t>(grey_.cols) +
-                           static_cast<std::size_t>(x)];
-        list.push_back({s.first + p.k, 1 - p.part});
-        list.push_back({s.first + p.k + 1, p.part});
+        const auto level = static_cast<Eigen::Index>(s.first + p.k);
+        std::size_t& at = next[pixel_at(x, y)];
+        terms_[at++] = {level, 1 - p.part};
+        terms_[at++] = {level + 1, p.part};
       });
     }
+  }
+
+  /// Fits the levels of all profiles, and in the first round a common ground, by weighted least squares.
+  void learn_profiles(bool first) {
     const auto n = static_cast<Eigen::Index>(levels_ + 1);
     Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
     double pixels = 0;
     for (int y = 0; y < grey_.rows; ++y)
       for (int x = 0; x < grey_.cols; ++x) {
-        auto& list = terms[static_cast<std::size_t>(y) * static_cast<std::size_t>(grey_.cols) +
-                           static_cast<std::size_t>(x)];
-        if (list.empty()) continue;
+        if (owner_(y, x) < 0) continue;
+        const std::size_t pixel = pixel_at(x, y);
         const auto b = static_cast<std::size_t>(owner_(y, x));
         const double v = static_cast<double>(grey_(y, x)) - offset_[b];
         double weight = 1;
@@ -139,14 +155,15 @@ class Explanation {
           const double scale = 10 * noise_;
           weight = scale * scale / (scale * scale + e * e);
         }
-        for (Term& t : list) t.share *= amplitude_[b];
-        if (first) list.push_back({levels_, 1});
-        for (const Term& t : list) {
-          right[static_cast<Eigen::Index>(t.level)] += weight * t.share * v;
-          for (const Term& u : list)
-            a(static_cast<Eigen::Index>(t.level), static_cast<Eigen::Index>(u.level)) +=
-                weight * t.share * u.share;
+        const std::span terms(terms_.data() + first_term_[pixel], terms_.data() + first_term_[pixel + 1]);
+        for (const Term& t : terms) {
+          const double share = weight * amplitude_[b] * t.share;
+          right[t.level] += share * v;
+          if (first) a(n - 1, t.level) += share;
+          for (const Term& u : terms)
+            if (u.level <= t.level) a(t.level, u.level) += share * amplitude_[b] * u.share;
         }
+        if (first) a(n - 1, n - 1) += 1, right[n - 1] += v;
         ++pixels;
       }
     // Levels in few pixels follow their neighbours; the profile is 0 where the disc has ended.
@@ -154,13 +171,13 @@ class Explanation {
     for (const Size& s : sizes_) {
       for (std::size_t k = 1; k < s.count; ++k) {
         const auto i = static_cast<Eigen::Index>(s.first + k);
-        a(i - 1, i - 1) += smooth, a(i, i) += smooth, a(i - 1, i) -= smooth, a(i, i - 1) -= smooth;
+        a(i - 1, i - 1) += smooth, a(i, i) += smooth, a(i, i - 1) -= smooth;
       }
       const auto last = static_cast<Eigen::Index>(s.first + s.count - 1);
       a(last, last) += 100 * smooth;
     }
     a.diagonal().array() += 1e-9 * (pixels + 1);
-    const Eigen::VectorXd solved = a.ldlt().solve(right);
+    const Eigen::VectorXd solved = a.selfadjointView<Eigen::Lower>().ldlt().solve(right);
     for (Size& s : sizes_)
       for (std::size_t k = 0; k < s.count; ++k) s.level[k] = solved[static_cast<Eigen::Index>(s.first + k)];
   }
@@ -354,6 +371,8 @@ class Explanation {
   std::size_t levels_ = 0;
   std::vector<std::size_t> size_of_;
   std::vector<double> amplitude_, offset_;
+  std::vector<std::size_t> first_term_;  // of each pixel in terms_
+  std::vector<Term> terms_;
   cv::Mat1i owner_;  // the disc that a pixel belongs to; -1: none
   cv::Mat1f out_;    // r - R of that disc
   cv::Mat1f model_;  // sum of the profiles

@@ -43,8 +43,8 @@ TEST(RimShift, OfDiscsIsNoneWithAnyNoise) {
 
 TEST(RimShift, TellsPolygonsFromDiscs) {
   // The radius of the circle of the same area is 1.05 times the inner radius of a hexagon.
-  EXPECT_GT(shift(objects(polygon(6, 0.95 * kRadius), 2), discs(kRadius)), 1.4 * kMostRimShift);
-  EXPECT_GT(shift(objects(polygon(4, 0.88 * kRadius), 2), discs(kRadius)), 3 * kMostRimShift);
+  EXPECT_GT(shift(objects(polygon(6, 0.95 * kRadius), 2), discs(kRadius)), kMostRimShift);
+  EXPECT_GT(shift(objects(polygon(4, 0.88 * kRadius), 2), discs(kRadius)), 2 * kMostRimShift);
   EXPECT_LT(shift(objects(polygon(8, 0.97 * kRadius), 2), discs(kRadius)), kMostRimShift);
 }
 

@@ -56,7 +56,7 @@ TEST(SettingsChoice, OnlyRoundDiscsAreChosen) {
   TriedSettings hexagons = tried(10, 5000, 10);
   hexagons.rim_shift = 0.0312;
   EXPECT_EQ(choose({hexagons, tried(20, 2600, 5)}).tried[1].not_chosen,
-            "not round: rims deviate from circles by 0.031 radii, those of beads by at most 0.02");
+            "not round: rims deviate from circles by 0.031 radii, those of beads by at most 0.028");
   // Round parts of objects that explain twice as much are no beads.
   const SettingsChoice none = choose({squares, tried(20, 2400, 5)});
   EXPECT_TRUE(none.tried.empty());

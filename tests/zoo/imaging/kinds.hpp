@@ -355,27 +355,6 @@ inline Exhibit bricks(double height) {
   });
 }
 
-/// Cells with walls of 0.2 pitches, around the points of a triangular lattice. \param walls, cells grey
-/// levels
-inline Exhibit honeycomb(double pitch, double walls, double cells) {
-  return pattern([=](double x, double y) {
-    std::array<double, 2> nearest = {HUGE_VAL, HUGE_VAL};  // distances to the two nearest points
-    const double row = std::round(y / (std::sqrt(0.75) * pitch));
-    for (double j = row - 1; j <= row + 1; ++j) {
-      const double offset = 0.5 * pitch * std::abs(std::fmod(j, 2.0)),
-                   column = std::round((x - offset) / pitch);
-      for (double i = column - 1; i <= column + 1; ++i) {
-        const double r = std::hypot(x - offset - i * pitch, y - j * std::sqrt(0.75) * pitch);
-        if (r < nearest[0])
-          nearest = {r, nearest[0]};
-        else
-          nearest[1] = std::min(nearest[1], r);
-      }
-    }
-    return nearest[1] - nearest[0] < 0.2 * pitch ? walls : cells;
-  });
-}
-
 /// A page of text.
 inline Exhibit page(double height) {
   Painter canvas(300, 230);
@@ -435,8 +414,6 @@ inline const std::vector<Kind>& without_beads() {
                                         {"crosses", crosses},
                                         {"checkerboard", checkerboard},
                                         {"bricks", bricks},
-                                        {"honeycomb", [](double d) { return honeycomb(d, 40, 200); }},
-                                        {"tiles", [](double d) { return honeycomb(d, 200, 60); }},
                                         {"text", page},
                                         {"spots", spots}};
   return all;
