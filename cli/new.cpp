@@ -62,7 +62,8 @@ std::optional<double> ask(const std::string& question, const std::string& otherw
     if (!std::getline(std::cin, line)) return std::nullopt;
     const std::size_t from = line.find_first_not_of(" \t\r"), to = line.find_last_not_of(" \t\r");
     if (from == std::string::npos) return std::nullopt;
-    if (const std::size_t comma = line.find(','); comma != std::string::npos && line.find('.') == std::string::npos)
+    if (const std::size_t comma = line.find(',');
+        comma != std::string::npos && line.find('.') == std::string::npos)
       line[comma] = '.';
     double value = 0;
     const char *begin = line.data() + from, *end = line.data() + to + 1;
