@@ -214,6 +214,30 @@ TEST(SquareFrame, StaysAsItIs) {
   EXPECT_EQ(cv::norm(frame, before, cv::NORM_INF), 0);
 }
 
+// Profile and radii are known up to a common stretch, which the rim fixes. Before, the radius followed the
+// size that was searched for, by up to 14 %.
+TEST(CommonProfile, TheRadiusIsThatOfTheRimWhateverSizeIsSearchedFor) {
+  constexpr double kDiameter = 22;
+  constexpr int kSide = 260;
+  const Look& look = kLooks.front();
+  std::mt19937_64 random(5);
+  Picture picture = blank(look, kSide, kSide);
+  const std::vector<double> radii(30, kDiameter / 2);
+  for (const Disc& d : rendered::sparse(radii, cv::Rect2d(12, 12, kSide - 24, kSide - 24), random))
+    put(picture, look, d.x, d.y, d.radius);
+  const cv::Mat grey = rendered::expose(rendered::expected(picture), picture, kSnr, 3);
+  for (const double searched : {0.9 * kDiameter, kDiameter, 1.1 * kDiameter}) {
+    LocatorOptions options;
+    options.diameter_px = searched;
+    options.refine.method = "profile";
+    const std::vector<Detection> beads = locate(grey, options).beads;
+    ASSERT_EQ(beads.size(), radii.size()) << searched;
+    double sum = 0;
+    for (const Detection& b : beads) sum += 2 * b.radius;
+    EXPECT_NEAR(sum / static_cast<double>(beads.size()), kDiameter, 0.02 * kDiameter) << searched;
+  }
+}
+
 TEST_P(Looks, ApartAreFoundUnasked) {
   for (const double diameter : kDiameters) see("apart", diameter);
 }
