@@ -104,8 +104,8 @@ void guard_outputs(const CLI::App& verb, Common& common) {
   for (const Output& output : common.outputs) {
     if (output.verb != &verb || output.option->count() == 0) continue;
     const std::string name = output.option->as<std::string>();
-    refuse_other_format(name, output.product);
     const std::filesystem::path final = require_output(name, output.product);
+    refuse_other_format(name, output.product);
     if (std::find(taken.begin(), taken.end(), final) != taken.end())
       throw ConfigError({.file = name, .key = {}}, "two outputs of one command have this name.");
     taken.push_back(final);
