@@ -323,7 +323,7 @@ class Explanation {
     std::vector<std::vector<double>> slope;
     for (const Size& s : sizes_) slope.push_back(slopes(s));
     std::vector<RimShift> rims(discs_.size());
-    std::vector<double> squares(discs_.size()), pixels(discs_.size());
+    std::vector<double> squares(discs_.size()), pixels(discs_.size()), weights(discs_.size());
     for (int y = 0; y < grey_.rows; ++y)
       for (int x = 0; x < grey_.cols; ++x) {
         if (owner_(y, x) < 0) continue;
@@ -339,6 +339,8 @@ class Explanation {
             static_cast<std::size_t>((turn - std::floor(turn)) * kSectors) % RimShift::kSectors;
         rims[b].px[sector] += change * e;
         rims[b].weight[sector] += change * change;
+        rims[b].radius += change * change * (d.radius + out);
+        weights[b] += change * change;
         squares[b] += e * e;
         ++pixels[b];
       }
@@ -357,6 +359,7 @@ class Explanation {
         rim.px[k] /= rim.weight[k];
         --pixels[b];
       }
+      rim.radius /= weights[b];
       // More is no noise, but another shape.
       const double by_chance = std::hypot(kNoise * noise_, kModel * range);
       rim.variance = std::min(std::max(0.0, squares[b]) / std::max(1.0, pixels[b]), by_chance * by_chance);

@@ -35,6 +35,7 @@ struct RimShift {
   static constexpr std::size_t kSectors = 24;
   std::array<double, kSectors> px{};      ///< 0 where nothing is seen
   std::array<double, kSectors> weight{};  ///< sum of (a_b f')^2
+  double radius = 0;                      ///< where the profile is steepest: mean of r by weight, px
   /// Of the residuals that no shift explains, but at most that of twice the noise and 0.02 of the range of
   /// the profile: px[k] has the variance variance/weight[k].
   double variance = 0;

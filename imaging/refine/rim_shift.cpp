@@ -117,7 +117,8 @@ double rim_shift(const std::vector<Detection>& discs, const std::vector<RimShift
   std::vector<std::vector<double>> squares(radii_px.size());
   for (std::size_t k = 0; k < seen.size(); ++k) {
     const Detection& d = discs[of[k]];
-    squares[nearest_size(d.radius, radii_px)].push_back(mean_square(seen[k]) / (d.radius * d.radius));
+    squares[nearest_size(d.radius, radii_px)].push_back(mean_square(seen[k]) /
+                                                        (seen[k].radius * seen[k].radius));
   }
   double largest = 0;
   for (std::vector<double>& of_size : squares)

@@ -20,8 +20,8 @@ namespace twincell::imaging {
 /// 0.08 to 0.09 for squares, and more for rods, crosses and textures.
 inline constexpr double kMostRimShift = 0.028;
 
-/// Root mean square deviation of the rims of discs from circles, in units of R: the lower quartile over the
-/// discs of a size, for the size with the largest.
+/// Root mean square deviation of the rims of discs from circles, in units of their radius: the lower quartile
+/// over the discs of a size, for the size with the largest.
 ///
 /// Subtracted are the best circle of each disc (errors of R and of the centre, light from one side), what
 /// goes with the cosine of twice the direction alike in three or more discs (motion, astigmatism, stretched
