@@ -158,7 +158,7 @@ TEST(Compare, OneReportWithEverythingInIt) {
   words.push_back(film(folder / "exp_b.h5", bed(1.50, 0, "experiment")));
   words.push_back(film(folder / "exp_c.h5", bed(2.00, 0.2, "experiment")));
   words.emplace_back("--simulation");
-  words.push_back(film(folder / "sim_a.h5", bed(1.10, 0, "simulation")));
+  words.push_back(film(folder / "sim_a.h5", bed(1.105, 0, "simulation")));
   words.push_back(film(folder / "sim_b.h5", bed(1.505, 0, "simulation")));
   words.push_back(film(folder / "sim_c.h5", bed(2.00, 0, "simulation")));
   const Ran ran = run_program(words);

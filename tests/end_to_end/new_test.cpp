@@ -76,12 +76,16 @@ nlohmann::json without(const fs::path& stack, const fs::path& cell, const std::s
 
 TEST(New, TheShippedStacksGiveTheNumbersOfTheirHandWrittenCells) {
   const TemporaryFolder folder;
-  for (const char* gamma : {"0.9", "1.6", "2.5"}) {
-    const fs::path stack = kDemo / (std::string("gamma-") + gamma),
-                   cell = folder / (std::string(gamma) + ".toml");
+  struct Shipped {
+    const char *gamma, *stack, *cell;
+  };
+  for (const auto& [gamma, name, by_hand] : {Shipped{"0.9", "gamma-0.9", "gamma-0.9/CELL.toml"},
+                                             Shipped{"1.6", "gamma-1.6", "gamma-1.6/CELL.toml"},
+                                             Shipped{"2.8", "gamma-2.8.tif", "gamma-2.8.toml"}}) {
+    const fs::path stack = kDemo / name, cell = folder / (std::string(gamma) + ".toml");
     const nlohmann::json d = run_json({"new", stack, "-o", cell, "--drive-gamma", gamma})["cells"][0];
     EXPECT_TRUE(d["open"].empty() && d["not_measured"].empty()) << d.dump(1);
-    const imaging::CellDescription hand = imaging::read_cell(stack / "CELL.toml"),
+    const imaging::CellDescription hand = imaging::read_cell(kDemo / by_hand),
                                    found = imaging::read_cell(cell);
     const auto error = [&](const char* key, std::size_t k = 0) {
       return d["measured"][key][k]["standard_error"].get<double>();
