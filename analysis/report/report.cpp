@@ -63,7 +63,7 @@ std::string phases_of(const std::vector<Run>& runs, const std::vector<std::size_
 /// How many numbers really differ, and the first of them by name.
 std::string real_differences(const Comparison& c) {
   constexpr std::size_t kMostNamed = 5;
-  const bool heights = several_heights(c.matches);
+  const bool heights = heights_of(c.matches).size() > 1;
   std::vector<std::string> names;
   for (const Difference& d : c.differences)
     if (d.is_real())
@@ -91,7 +91,7 @@ std::vector<std::string> conclusion_sentences(const Comparison& c) {
   const std::vector<Run>& runs = c.runs;
   const std::vector<Match>& matches = c.matches;
   if (runs.empty() && (!c.sweep.empty() || !c.boundaries.empty())) return {conclusion_of_sweep(c)};
-  const bool heights = several_heights(matches);
+  const bool heights = heights_of(matches).size() > 1;
   std::vector<std::string> differ, open;
   std::size_t paired = 0, same = 0;
   for (const Match& match : matches) {
@@ -538,13 +538,8 @@ std::vector<Section> sections_of(const Comparison& c, const std::vector<Figure>&
 /// "cell 10 σ wide, N_l = 6 and 10": the width of the first run, all heights; "sweep" without runs.
 std::string cell_words(const Comparison& c) {
   if (c.runs.empty()) return "sweep";
-  std::vector<double> heights;
-  for (const Match& match : c.matches)
-    if (std::none_of(heights.begin(), heights.end(), [&](double h) { return same_height(h, match.n_l); }))
-      heights.push_back(match.n_l);
-  std::sort(heights.begin(), heights.end());
   return fmt::format("cell {:.3g} σ wide, N_l = {:.3g}", c.runs.front().box.size().x(),
-                     fmt::join(heights, " and "));
+                     fmt::join(heights_of(c.matches), " and "));
 }
 
 /// The conclusion as the box that opens the page. Its class says by colour whether the sides agree.

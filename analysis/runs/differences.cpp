@@ -260,7 +260,7 @@ namespace {
 /// The columns Gamma and, for beds of several heights, N_l.
 class Conditions {
  public:
-  explicit Conditions(const std::vector<Match>& matches) : heights_(several_heights(matches)) {}
+  explicit Conditions(const std::vector<Match>& matches) : heights_(heights_of(matches).size() > 1) {}
   [[nodiscard]] std::string head() const { return row("Gamma", "N_l"); }
   [[nodiscard]] std::string of(const Match& match) const {
     return row(fmt::format("{:.3f}", match.gamma), fmt::format("{:.3g}", match.n_l));

@@ -54,7 +54,7 @@ std::vector<PhaseBoundary> find_boundaries(const std::vector<Run>& runs) {
       if (run.phase == BedPhase::undetermined) continue;
       std::size_t b = first;
       while (b < found.size() && !(found[b].side == run.side && found[b].start == run.start &&
-                                   std::abs(run.n_l - leaders[b - first]) <= 0.1 * leaders[b - first]))
+                                   same_height(leaders[b - first], run.n_l)))
         ++b;
       if (b == found.size()) {
         found.push_back({.side = run.side, .start = run.start, .onset = onset});

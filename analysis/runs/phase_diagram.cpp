@@ -100,9 +100,13 @@ bool same_height(double a, double b) {
   return std::abs(a - b) <= 0.1 * a;
 }
 
-bool several_heights(const std::vector<Match>& matches) {
-  return std::any_of(matches.begin(), matches.end(),
-                     [&](const Match& match) { return !same_height(matches.front().n_l, match.n_l); });
+std::vector<double> heights_of(const std::vector<Match>& matches) {
+  std::vector<double> heights;
+  for (const Match& match : matches)
+    if (std::none_of(heights.begin(), heights.end(), [&](double h) { return same_height(h, match.n_l); }))
+      heights.push_back(match.n_l);
+  std::sort(heights.begin(), heights.end());
+  return heights;
 }
 
 std::string condition_text(const Match& match, bool height) {

@@ -78,8 +78,8 @@ std::vector<Match> match_runs(const std::vector<Run>& runs, double tolerance = 0
 
 /// Whether two numbers of layers count as the same height: |a - b| <= a/10.
 bool same_height(double a, double b);
-/// Whether the matches have beds of more than one height.
-bool several_heights(const std::vector<Match>& matches);
+/// The different heights of the matches, N_l, in ascending order.
+std::vector<double> heights_of(const std::vector<Match>& matches);
 /// "Gamma 2.8"; with `height`, "Gamma 2.8, N_l = 6".
 std::string condition_text(const Match& match, bool height);
 

@@ -1,12 +1,15 @@
 """Debian's Chromium without a window, driven through a pipe (DevTools protocol), and what every page must satisfy."""
 import base64
+import contextlib
 import fcntl
 import json
 import os
 import pathlib
 import select
+import shutil
 import subprocess
 import sys
+import tempfile
 import time
 
 PATIENCE = 60  # s
@@ -111,6 +114,29 @@ def run(*words):
     done = subprocess.run([str(w) for w in words], capture_output=True, text=True)
     assert done.returncode == 0, f"{words}: {done.stderr}"
     return done.stdout
+
+
+def prepare(scratch):
+    """Empties the folder of a test and returns the path of the browser. Without a browser the test is skipped."""
+    chromium = shutil.which("chromium")
+    if not chromium:
+        skip("no chromium here (Debian: chromium), so the page was not opened")
+    shutil.rmtree(scratch, ignore_errors=True)
+    scratch.mkdir(parents=True)
+    return chromium
+
+
+@contextlib.contextmanager
+def watched_browser(program):
+    """A browser for a `with` block, at whose end no page has asked anything of the outside or raised an error."""
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        browser = open_browser(program, profile)
+        try:
+            yield browser
+            check_no_request(browser)
+        finally:
+            browser.process.terminate()
+            browser.process.wait()
 
 
 def open_browser(program, profile):

@@ -8,12 +8,10 @@ Exits 77, saying so, where there is no chromium.
 import csv
 import json
 import pathlib
-import shutil
 import subprocess
 import sys
-import tempfile
 
-from browser import check_fit, check_no_request, open_browser, run, skip
+from browser import check_fit, prepare, run, watched_browser
 
 SCENE = """preset = "fortini-huang-2015"
 [beads]
@@ -154,11 +152,7 @@ def check_bound(program, folder, trajectory):
 def main():
     program, scratch = sys.argv[1], pathlib.Path(sys.argv[2]) / "draw_page_in_browser"
     pictures = pathlib.Path(sys.argv[3]) if len(sys.argv) > 3 else None
-    chromium = shutil.which("chromium")
-    if not chromium:
-        skip("no chromium here (Debian: chromium), so the page was not played")
-    shutil.rmtree(scratch, ignore_errors=True)
-    scratch.mkdir(parents=True)
+    chromium = prepare(scratch)
     (scratch / "flat.toml").write_text(SCENE)
     (scratch / "balls.toml").write_text(BALLS)
     for name in ("flat", "balls"):
@@ -169,29 +163,23 @@ def main():
     assert said["frames"] == 20 and abs(said["megabytes"] * 1e6 - page.stat().st_size) < 1, said
     run(program, "draw", scratch / "balls.h5", "-o", solid, "-q")
     frames = table(program, scratch / "flat.h5", scratch / "flat.csv")
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        browser = open_browser(chromium, profile)
-        try:
-            for width, height in ((1280, 900), (390, 844)):
-                browser.open(page.resolve().as_uri(), width, height)
-                check_fit(browser, width)
-                for number in (0, 7, 19):
-                    check_beads(browser, frames, number)
-                check_player(browser)
-                check_zoom(browser)
-                check_tracks(browser)
-                if width == 1280:
-                    check_hover(browser, frames)
-                if pictures:
-                    browser.picture(pictures / f"draw_page_{width}.png")
-            browser.open(solid.resolve().as_uri(), 1280, 900)
-            assert int(browser.value("document.body.dataset.shown")) == 30
+    with watched_browser(chromium) as browser:
+        for width, height in ((1280, 900), (390, 844)):
+            browser.open(page.resolve().as_uri(), width, height)
+            check_fit(browser, width)
+            for number in (0, 7, 19):
+                check_beads(browser, frames, number)
+            check_player(browser)
+            check_zoom(browser)
+            check_tracks(browser)
+            if width == 1280:
+                check_hover(browser, frames)
             if pictures:
-                browser.picture(pictures / "draw_page_3d.png")
-            check_no_request(browser)
-        finally:
-            browser.process.terminate()
-            browser.process.wait()
+                browser.picture(pictures / f"draw_page_{width}.png")
+        browser.open(solid.resolve().as_uri(), 1280, 900)
+        assert int(browser.value("document.body.dataset.shown")) == 30
+        if pictures:
+            browser.picture(pictures / "draw_page_3d.png")
     print("the page was used at 1280 and 390 px; nothing was asked of the outside")
 
 

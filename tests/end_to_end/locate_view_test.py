@@ -6,11 +6,9 @@ Exits 77, saying so, where there is no chromium.
 """
 import json
 import pathlib
-import shutil
 import sys
-import tempfile
 
-from browser import check_fit, check_no_request, open_browser, run, skip
+from browser import check_fit, prepare, run, watched_browser
 
 
 def text(browser, id):
@@ -114,31 +112,21 @@ def check_hover(browser):
 def main():
     program, source, scratch = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]) / "locate_view_in_browser"
     pictures = pathlib.Path(sys.argv[4]) if len(sys.argv) > 4 else None
-    chromium = shutil.which("chromium")
-    if not chromium:
-        skip("no chromium here (Debian: chromium), so the page was not clicked through")
-    shutil.rmtree(scratch, ignore_errors=True)
-    scratch.mkdir(parents=True)
+    chromium = prepare(scratch)
     page = scratch / "view.html"
     run(program, "locate", source / "data_samples/demo/gamma-0.9", "-q", "--frames", "0:3", "-o", scratch / "beads.csv", "--view", page)
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        browser = open_browser(chromium, profile)
-        try:
-            for width, height in ((1280, 900), (390, 844)):
-                browser.open(page.resolve().as_uri(), width, height)
-                check_fit(browser, width)
-                check_run(browser, program, scratch)
-                check_picture(browser)
-                check_sliders(browser, program, scratch)
-                check_hypotheses(browser)
-                if width == 1280:
-                    check_hover(browser)
-                if pictures:
-                    browser.picture(pictures / f"locate_view_{width}.png")
-            check_no_request(browser)
-        finally:
-            browser.process.terminate()
-            browser.process.wait()
+    with watched_browser(chromium) as browser:
+        for width, height in ((1280, 900), (390, 844)):
+            browser.open(page.resolve().as_uri(), width, height)
+            check_fit(browser, width)
+            check_run(browser, program, scratch)
+            check_picture(browser)
+            check_sliders(browser, program, scratch)
+            check_hypotheses(browser)
+            if width == 1280:
+                check_hover(browser)
+            if pictures:
+                browser.picture(pictures / f"locate_view_{width}.png")
     print("the page was used at 1280 and 390 px; nothing was asked of the outside")
 
 

@@ -6,12 +6,10 @@ Talks to Debian's Chromium through a pipe (DevTools protocol); exits 77, saying 
 """
 import json
 import pathlib
-import shutil
 import sys
-import tempfile
 import time
 
-from browser import PATIENCE, check_fit, check_no_request, open_browser, run, skip
+from browser import PATIENCE, check_fit, prepare, run, watched_browser
 
 
 def make_report(program, source, scratch):
@@ -160,38 +158,28 @@ def check_theme_and_keys(browser):
 def main():
     program, source, scratch = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]) / "report_in_browser"
     pictures = pathlib.Path(sys.argv[4]) if len(sys.argv) > 4 else None
-    chromium = shutil.which("chromium")
-    if not chromium:
-        skip("no chromium here (Debian: chromium), so the report was not clicked through")
-    shutil.rmtree(scratch, ignore_errors=True)
-    scratch.mkdir(parents=True)
+    chromium = prepare(scratch)
     url = make_report(program, source, scratch).resolve().as_uri()
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        browser = open_browser(chromium, profile)
-        try:
-            browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "light"}])
-            browser.open(url, 1280, 900)
-            check_fit(browser, 1280)
-            check_opening(browser)
-            check_sections(browser)
-            check_theme_and_keys(browser)
-            check_clicks(browser)
-            check_overlay(browser)
-            check_tables(browser, scratch)
-            if pictures:
-                browser.picture(pictures / "laptop.png")
-            browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
-            browser.open(url, 390, 844)
-            check_fit(browser, 390)
-            assert browser.value("getComputedStyle(document.body).backgroundColor") == "rgb(21, 24, 28)", "dark as the system says"
-            check_opening(browser)
-            check_clicks(browser)
-            if pictures:
-                browser.picture(pictures / "phone.png")
-            check_no_request(browser)
-        finally:
-            browser.process.terminate()
-            browser.process.wait()
+    with watched_browser(chromium) as browser:
+        browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "light"}])
+        browser.open(url, 1280, 900)
+        check_fit(browser, 1280)
+        check_opening(browser)
+        check_sections(browser)
+        check_theme_and_keys(browser)
+        check_clicks(browser)
+        check_overlay(browser)
+        check_tables(browser, scratch)
+        if pictures:
+            browser.picture(pictures / "laptop.png")
+        browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+        browser.open(url, 390, 844)
+        check_fit(browser, 390)
+        assert browser.value("getComputedStyle(document.body).backgroundColor") == "rgb(21, 24, 28)", "dark as the system says"
+        check_opening(browser)
+        check_clicks(browser)
+        if pictures:
+            browser.picture(pictures / "phone.png")
     print("the report was clicked through at 1280 and 390 px; nothing was asked of the outside")
 
 

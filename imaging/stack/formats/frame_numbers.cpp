@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 
+#include "core/counted.hpp"
 #include "core/median.hpp"
 
 namespace twincell::imaging::frames {
@@ -84,9 +85,9 @@ std::vector<std::string> notes_on_names(const std::vector<std::string>& names) {
   const auto even = std::count(steps.begin(), steps.end(), step);
   if (missing == 0 || static_cast<double>(even) < kEven * static_cast<double>(steps.size())) return {};
   return {
-      fmt::format("the numbers in the names skip {} frame{}: {}; the phases of the frames after a gap need "
+      fmt::format("the numbers in the names skip {}: {}; the phases of the frames after a gap need "
                   "--phase-lock found, or a stack without the gap.",
-                  missing, missing == 1 ? "" : "s", skipped_numbers(numbers, step))};
+                  counted(missing, "frame"), skipped_numbers(numbers, step))};
 }
 
 }  // namespace twincell::imaging::frames
