@@ -16,8 +16,8 @@ namespace twincell::imaging {
 
 /// Largest rim_shift of discs. It is 0 to 0.014 for beads in real and drawn pictures, in jpeg files, next to
 /// missed beads, walls and beads behind them, 0.021 on a perforated table and 0.026 in a blurred crystal;
-/// 0.013 to 0.017 for octagons, 0.022 for honeycombs, 0.03 to 0.035 for hexagons, 0.04 to 0.06 for pentagons,
-/// 0.08 to 0.09 for squares, and more for rods, crosses and textures.
+/// 0.013 to 0.017 for octagons, 0.022 to 0.029 for honeycombs, 0.03 to 0.035 for hexagons, 0.04 to 0.06 for
+/// pentagons, 0.08 to 0.09 for squares, and more for rods, crosses and textures.
 inline constexpr double kMostRimShift = 0.028;
 
 /// Root mean square deviation of the rims of discs from circles, in units of their radius: the lower quartile
