@@ -349,8 +349,9 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
   return targets;
 }
 
-/// Values with error bars if the interval is closed, arrows for one-sided limits. Random and crystal points
-/// are shifted slightly to the left and right of their N_l, so that the bars do not overlap.
+/// Values with error bars if the interval is closed, arrows for one-sided limits. Lines join values at
+/// consecutive heights and do not pass over a limit. Random and crystal points are shifted slightly to the
+/// left and right of their N_l, so that the bars do not overlap.
 analysis::Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& filmed) {
   analysis::Figure f{
       .name = "p1-fig3", .title = "Onsets of bouncing and convection", .width = 640, .height = 520};
@@ -371,6 +372,7 @@ analysis::Figure figure_of(const std::deque<Boundary>& all, const std::vector<Fi
   int index = 0;
   for (const Style& style : kStyles) {
     std::string values, limits;
+    bool limit_before = false;
     for (const Boundary& b : all) {
       if (b.random != style.random || b.convecting != style.convecting || !b.begun()) continue;
       const Onset& o = b.onset();
@@ -378,7 +380,11 @@ analysis::Figure figure_of(const std::deque<Boundary>& all, const std::vector<Fi
       n_l.show(x);
       for (const auto& end : {o.value, o.low, o.high})
         if (end) gamma.show(*end);
-      if (o.value && o.low && o.high)
+      const bool closed = o.value && o.low && o.high;
+      // A blank line interrupts the line that gnuplot draws.
+      if (closed && limit_before && !values.empty()) values += '\n';
+      limit_before = !closed;
+      if (closed)
         values += fmt::format("{} {} {} {}\n", x, *o.value, *o.low, *o.high);
       else if (o.low)
         limits += fmt::format("{} {} 0 0.25\n", x, *o.low);

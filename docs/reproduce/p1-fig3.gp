@@ -38,12 +38,12 @@ set linetype 6 lc rgb '#56B4E9' pt 15 ps 0.9 lw 1.3
 set linetype 7 lc rgb '#000000' pt 6 ps 0.9 lw 1.3
 set linetype 8 lc rgb '#9A9A9A' pt 4 ps 0.9 lw 1.3
 set xlabel 'N_l σ'
-set xrange [7.46:62.54]
+set xrange [6.66:83.34]
 unset logscale x
 set xtics 10
 set format x '%g'
 set ylabel 'Γ = A ω^2/g'
-set yrange [0.925:2.95]
+set yrange [0.921:3.054]
 unset logscale y
 set ytics 0.5
 set format y '%g'
