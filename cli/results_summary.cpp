@@ -6,6 +6,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/counted.hpp"
+
 namespace twincell::cli {
 
 namespace {
@@ -35,22 +37,23 @@ std::string row(const analysis::Result& r) {
 std::string results_summary(const std::vector<analysis::Result>& results, bool requested) {
   constexpr const char* kVerdict = "phase";  // printed first
   std::string text, other_words, rows;
-  std::size_t lists = 0, absent = 0;
+  std::size_t numbers = 0, lists = 0, absent = 0;
   for (const analysis::Result& r : results) {
-    if (r.present() && !r.text.empty())
+    const bool present = r.present(), scalar = r.shape.empty();
+    if (present && !r.text.empty())
       (r.name == kVerdict ? text : other_words) += fmt::format("{}: {} ({})\n", r.name, r.text, r.convention);
-    else if (requested || (r.present() && r.shape.empty()))
+    else if (requested || (present && scalar && analysis::named_result(r.name).main))
       rows += row(r);
     else
-      ++(r.present() ? lists : absent);
+      ++(!present ? absent : scalar ? numbers : lists);
   }
   text += other_words;
   if (!rows.empty())
     text +=
         fmt::format("{:<25} {:<13} {:<26} {:<15} from\n", "result", "value", "95 % interval", "unit") + rows;
-  if (lists + absent > 0)
-    text += fmt::format("{} more are lists, {} absent; -v prints them, and how each result is computed\n",
-                        lists, absent);
+  if (numbers + lists + absent > 0)
+    text += fmt::format("not printed: {}, {}, {} absent; -v prints them, and how each is computed\n",
+                        counted(numbers, "number"), counted(lists, "list"), absent);
   return text;
 }
 

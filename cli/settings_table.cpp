@@ -17,6 +17,65 @@ std::string options_of(const imaging::FoundSettings& settings, const std::string
   return text + " --refine " + method;
 }
 
+namespace {
+
+bool diameter_found(const imaging::LocatorOptions& given) {
+  return given.diameter_px <= 0;
+}
+bool polarity_found(const imaging::LocatorOptions& given) {
+  return !given.polarity_known;
+}
+/// Darkness is in units of a part of the light.
+bool pale(const imaging::LocatorOptions& locator) {
+  return locator.preprocess.contrast < 1 && imaging::model_of(locator.refine) != imaging::DiscModel::circle;
+}
+
+}  // namespace
+
+std::string found_settings_text(const imaging::LocatorOptions& given, const imaging::LocatorOptions& locator,
+                                std::int64_t frame, const std::string& evidence) {
+  const std::string shown = frame == 0 ? "the first frame" : fmt::format("frame {}", frame);
+  const imaging::DiscModel model = imaging::model_of(locator.refine);
+  const bool model_found = given.refine.method != locator.refine.method;
+  std::string text;
+  if (diameter_found(given)) {
+    std::string sizes = fmt::format("{:.2f}", locator.diameter_px);
+    for (const double other : locator.other_diameters_px) sizes += fmt::format(" and {:.2f}", other);
+    text += fmt::format("bead diameter found from {}: {} px (--diameter)\n", shown, sizes);
+  }
+  text += evidence;
+  if (model_found && model == imaging::DiscModel::circle)
+    text += fmt::format(
+        "the insides of the discs differ in {}: the discs are fitted by their rims (--refine edges)\n",
+        shown);
+  if (model_found && model == imaging::DiscModel::shared_profile)
+    text += fmt::format(
+        "the discs are alike but not plain in {}: they are fitted by their common profile (--refine "
+        "profile)\n",
+        shown);
+  if (pale(locator))
+    text += fmt::format("beads are pale: darkness is in units of {:.2f} of the light\n",
+                        locator.preprocess.contrast);
+  if (!polarity_found(given)) return text;
+  // Discs with a common profile may have rings of both kinds.
+  if (model == imaging::DiscModel::shared_profile)
+    return text + fmt::format("frames are read as with --{}, which explains {} better (--dark, --bright)\n",
+                              locator.preprocess.bright ? "bright" : "dark", shown);
+  return text + fmt::format("beads are {} than the background in {} (--dark, --bright)\n",
+                            locator.preprocess.bright ? "brighter" : "darker", shown);
+}
+
+nlohmann::json found_settings_as_json(const imaging::LocatorOptions& given,
+                                      const imaging::LocatorOptions& locator, std::int64_t frame) {
+  nlohmann::json found = {{"diameter_px", locator.diameter_px},
+                          {"refine", locator.refine.method},
+                          {"bright", locator.preprocess.bright}};
+  if (!locator.other_diameters_px.empty()) found["other_diameters_px"] = locator.other_diameters_px;
+  if (pale(locator)) found["contrast"] = locator.preprocess.contrast;
+  if (diameter_found(given) || polarity_found(given)) found["settings_frame"] = frame;
+  return found;
+}
+
 std::string settings_table(const imaging::SettingsChoice& choice, const std::string& refine) {
   const bool chosen = !choice.tried.empty();
   const std::vector<imaging::TriedSettings>& all = chosen ? choice.tried : choice.refused;

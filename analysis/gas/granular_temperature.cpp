@@ -11,9 +11,18 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{"T_g"},         {"T_x"},     {"T_y"},          {"T_z"},
-                                    {"T"},           {"T_z_eq5"}, {"T_z_field"},    {"T_bar_z"},
-                                    {"T_bar"},       {"T_z_tau"}, {"T_g_aliasing"}, {"T_z_aliasing"},
+constexpr NamedResult kResults[] = {{.name = "T_g", .main = true},
+                                    {.name = "T_x", .main = true},
+                                    {"T_y"},
+                                    {.name = "T_z", .main = true},
+                                    {"T"},
+                                    {"T_z_eq5"},
+                                    {"T_z_field"},
+                                    {.name = "T_bar_z", .main = true},
+                                    {"T_bar"},
+                                    {"T_z_tau"},
+                                    {"T_g_aliasing"},
+                                    {"T_z_aliasing"},
                                     {"T_g_sampling"}};
 
 const char* const kPaper1 = "Fortini & Huang 2015, eq. 2";

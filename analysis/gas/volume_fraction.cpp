@@ -9,7 +9,7 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{"phi_top"}, {"phi_cm"}};
+constexpr NamedResult kResults[] = {{"phi_top"}, {.name = "phi_cm", .main = true}};
 
 const char* const kSource = "Bhateja, Sharma & Singh 2016, sec. IV";
 

@@ -13,7 +13,7 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{"flight_time"}, {"flight_share"}};
+constexpr NamedResult kResults[] = {{.name = "flight_time", .main = true}, {"flight_share"}};
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 

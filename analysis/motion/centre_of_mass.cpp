@@ -11,7 +11,11 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{"h_cm"}, {"h_cm_k"}, {"h_cm_j"}, {"delta_h_cm"}, {"delta_h_bar"}};
+constexpr NamedResult kResults[] = {{.name = "h_cm", .main = true},
+                                    {"h_cm_k"},
+                                    {"h_cm_j"},
+                                    {.name = "delta_h_cm", .main = true},
+                                    {"delta_h_bar"}};
 
 const char* const kSource = "Bhateja, Sharma & Singh 2016, Table II and Fig. 7";
 

@@ -11,9 +11,10 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{"displacement_field"}, {"field_x"},           {"field_z"},
-                                    {"circulation_left"},   {"circulation_right"}, {"rolls"},
-                                    {"convection_sense"}};
+constexpr NamedResult kResults[] = {
+    {"displacement_field"}, {"field_x"},           {"field_z"},
+    {"circulation_left"},   {"circulation_right"}, {.name = "rolls", .main = true},
+    {"convection_sense"}};
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMostRows = 4096;  // bounds the table: a bead that is thrown far up must not enlarge it

@@ -14,7 +14,7 @@ namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{"s_k"},
-                                    {"s_b", Pooling::root_mean_square},
+                                    {.name = "s_b", .pooling = Pooling::root_mean_square, .main = true},
                                     {"s_b_variance", Pooling::root_mean_square},
                                     {"s_b_about_rest", Pooling::root_mean_square},
                                     {"s_b_as_printed", Pooling::root_mean_square},
@@ -22,7 +22,7 @@ constexpr NamedResult kResults[] = {{"s_k"},
                                     {"s_b_noise"},
                                     {"s_j_noise"},
                                     {"s_j", Pooling::root_mean_square},
-                                    {"s_c", Pooling::root_mean_square},
+                                    {.name = "s_c", .pooling = Pooling::root_mean_square, .main = true},
                                     {"cycle_of_convection"},
                                     {"s_j_growth"},
                                     {"s_j_growth_late"},
@@ -478,7 +478,7 @@ class PhaseThresholds : public Observable {
       return;
     }
     Result r{.name = "phase", .text = phase_name(phase), .n = s_b.n, .n_of = s_b.n_of};
-    r.convention = "s_b > sigma/30: the bed leaves the plate; s_c > sigma as well: it convects";
+    r.convention = row_of(kBedPhases, phase).help;
     if (phase == BedPhase::convecting && find_result(all, "drift").text == drift_name(Drift::annealed))
       r.convention += "; but annealed: s_c shows the first rearrangement, not steady convection";
     r.source = source;

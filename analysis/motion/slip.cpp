@@ -11,9 +11,12 @@ namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {
-    {"p_s", Pooling::probability, true},     {"slips", Pooling::sum, true},
-    {"p_s_j", Pooling::mean, true},          {"slip_directions", Pooling::sum, true},
-    {"slip_oblique", Pooling::mean, true},   {"slip_vertical", Pooling::mean, true},
+    {.name = "p_s", .pooling = Pooling::probability, .may_repeat = true, .main = true},
+    {"slips", Pooling::sum, true},
+    {"p_s_j", Pooling::mean, true},
+    {"slip_directions", Pooling::sum, true},
+    {"slip_oblique", Pooling::mean, true},
+    {"slip_vertical", Pooling::mean, true},
     {"slip_horizontal", Pooling::mean, true}};
 
 constexpr std::size_t kDirections = 36;

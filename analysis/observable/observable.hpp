@@ -160,7 +160,8 @@ struct NamedResult {
   std::string_view name;
   Pooling pooling = Pooling::mean;
   bool may_repeat =
-      false;  ///< two different runs may well give the same value: a count, or a camera constant
+      false;          ///< two different runs may well give the same value: a count, or a camera constant
+  bool main = false;  ///< one of the main results, which `analyze` and `measure` print without -v
 };
 
 /// One observable: its results and its factory. NAME.cpp defines NAME_observable, the list in observables.cpp

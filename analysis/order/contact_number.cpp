@@ -6,7 +6,7 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{"contact_number"}, {"contact_number_inside"}};
+constexpr NamedResult kResults[] = {{.name = "contact_number", .main = true}, {"contact_number_inside"}};
 const char* const kSource = "Thornton 2000";
 
 class ContactNumber : public Observable {

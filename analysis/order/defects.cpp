@@ -10,10 +10,15 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {
-    {"disclinations_5"}, {"disclinations_7"},    {"disclinations_other"},
-    {"dislocations"},    {"free_disclinations"}, {"holes"},
-    {"defect_fraction"}, {"defect_fraction_j"},  {"coordination_beads", Pooling::per_bead}};
+constexpr NamedResult kResults[] = {{"disclinations_5"},
+                                    {"disclinations_7"},
+                                    {"disclinations_other"},
+                                    {.name = "dislocations", .main = true},
+                                    {"free_disclinations"},
+                                    {"holes"},
+                                    {.name = "defect_fraction", .main = true},
+                                    {"defect_fraction_j"},
+                                    {"coordination_beads", Pooling::per_bead}};
 
 constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
 const char* const kSource = "Fortini & Huang 2015, sec. III, after Nelson & Halperin 1979";

@@ -13,7 +13,7 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{"grains"},
+constexpr NamedResult kResults[] = {{.name = "grains", .main = true},
                                     {"largest_grain"},
                                     {"grain_boundary_fraction"},
                                     {"grain_boundary_angle"},

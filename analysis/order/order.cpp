@@ -5,10 +5,10 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{"q6"},
+constexpr NamedResult kResults[] = {{.name = "q6", .main = true},
                                     {"psi6"},
                                     {"psi4"},
-                                    {"hexagonal_fraction"},
+                                    {.name = "hexagonal_fraction", .main = true},
                                     {"square_fraction"},
                                     {"q6_beads", Pooling::per_bead},
                                     {"psi6_beads", Pooling::per_bead},

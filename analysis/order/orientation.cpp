@@ -11,8 +11,8 @@ namespace {
 
 constexpr NamedResult kResults[] = {{"ordered_fraction"},
                                     {"orientation", Pooling::angle},
-                                    {"orientation_a"},
-                                    {"orientation_b"},
+                                    {.name = "orientation_a", .main = true},
+                                    {.name = "orientation_b", .main = true},
                                     {"orientation_beads", Pooling::per_bead}};
 
 const char* const kSource = "Fortini & Huang 2015, Fig. 2";

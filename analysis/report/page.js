@@ -266,6 +266,15 @@
     }
   }
 
+  // Indices of the frames of a film: the phases of the last cycle of which several are kept, the beginnings of all cycles, or
+  // all frames. Without phases: all.
+  function filmed(which) {
+    const lead = runs[state.experiment !== null ? state.experiment : state.simulation], all = lead.moments.map((m, k) => k);
+    const cycles = lead.moments.map(m => m.cycle), last = cycles.findLast(c => c !== null && cycles.filter(d => d === c).length > 1);
+    const some = which === 'cycle' ? all.filter(k => cycles[k] === last) : which === 'strobe' ? all.filter(k => lead.moments[k].fraction === 0) : all;
+    return some.length > 1 ? some : all;
+  }
+
   function nearest(run, when) {
     let best = 0;
     run.moments.forEach((m, k) => { if (Math.abs(at(m) - when) < Math.abs(at(run.moments[best]) - when) - 1e-9) best = k; });
@@ -498,10 +507,12 @@
     if (state.playing) { clearInterval(state.playing); state.playing = null; $('play').textContent = 'Play'; return; }
     $('play').textContent = 'Stop';
     state.playing = setInterval(() => {
-      state.moment = (state.moment + 1) % (Number($('moment').max) + 1);
+      const film = filmed($('film').value);
+      if (!film.length) return;
+      state.moment = film[(film.indexOf(state.moment) + 1) % film.length];
       $('moment').value = state.moment;
       drawMoment();
-    }, 250);
+    }, 160);
   });
   for (const svg of document.querySelectorAll('.beads')) zoomable(svg);
   document.body.classList.add('live');

@@ -427,7 +427,7 @@ constexpr std::string_view kOpening = R"(
 <figure id="panel-experiment"><svg class="beads" role="img"></svg><figcaption></figcaption></figure>
 <figure id="panel-simulation"><svg class="beads" role="img"></svg><figcaption></figcaption></figure>
 </div>
-<div class="controls"><button id="play">Play</button><input id="moment" type="range" min="0" value="0" aria-label="frame"><span id="moment-label"></span></div>
+<div class="controls"><button id="play">Play</button><label>film <select id="film"><option value="cycle">within one cycle</option><option value="strobe">from cycle to cycle</option><option value="all">all frames</option></select></label><input id="moment" type="range" min="0" value="0" aria-label="frame"><span id="moment-label"></span></div>
 <div class="controls">
 <label><input type="checkbox" id="layer-raw" checked> camera frame</label>
 <label><input type="checkbox" id="layer-found" checked> beads</label>

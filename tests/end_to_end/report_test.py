@@ -83,6 +83,15 @@ def check_overlay(browser):
     browser.value("document.getElementById('moment').focus()")
     browser.key("End", 35)
     assert circles(browser, "experiment", ".tracks polyline") > 0, "tracers leave tracks"
+    for film, same, differing, least in (("cycle", 0, 1, 4), ("strobe", 1, 0, 2)):  # parts of "cycle 3, phase 5/20"
+        browser.value(f"document.getElementById('film').value = '{film}'")
+        browser.value("(() => { window.watch?.disconnect(); window.played = []; window.watch = new MutationObserver(() => played.push(document.getElementById('moment-label').textContent))"
+                      "; watch.observe(document.getElementById('moment-label'), {childList: true}) })()")
+        browser.click("document.getElementById('play')")
+        browser.wait("played.length >= 5", f"the film {film} plays")
+        browser.click("document.getElementById('play')")
+        parts = [label.split(", ") for label in browser.value("played")[:5]]
+        assert len({p[same] for p in parts}) == 1 and len({p[differing] for p in parts}) >= least, f"{film}: {parts}"
     for name in ("s_k", "s_j"):
         assert browser.value(f"document.querySelectorAll('#series-{name} .scatterlayer .trace').length") >= 2, name
 

@@ -11,8 +11,10 @@
 
 namespace twincell {
 
-/// Version of our additions to H5MD, stored as /twincell@schema_version; the reader rejects a newer one.
-inline constexpr int kSchemaVersion = 1;
+/// Latest version of our additions to H5MD. A file states in /twincell@schema_version the lowest version
+/// whose readers understand it: 2 if its drive has a ramp or a horizontal motion, which readers of version 1
+/// would take for a steady vertical drive, otherwise 1. The reader rejects a newer version than this.
+inline constexpr int kSchemaVersion = 2;
 
 /// Writes a trajectory frame by frame under a temporary name.
 class H5mdWriter : public TrajectorySink {

@@ -89,6 +89,29 @@ TEST(H5mdFile, TheHarmonicsOfTheDriveAreStored) {
   EXPECT_EQ(drive.harmonics[1].phase, 1.0 / 3);
 }
 
+// A program that knows no ramp must refuse the file, and not read it as a steady drive.
+TEST(H5mdFile, TheVersionOfTheSchemaIsTheLowestThatUnderstandsTheDrive) {
+  const TemporaryFolder folder;
+  const auto version = [&](const Drive& drive) {
+    TrajectoryInfo info = experiment_info();
+    info.drive = drive;
+    H5mdWriter writer(folder / "run.h5", info);
+    writer.append(frame_number(0));
+    writer.finish();
+    const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+    const h5::Handle ours(H5Gopen2(file.get(), "twincell", H5P_DEFAULT));
+    return h5::read_int_attribute(ours.get(), "schema_version").at(0);
+  };
+  const Drive steady{Axis::z, 1.8, 1.0};
+  Drive ramped = steady, tilted = steady;
+  ramped.ramp = {.from = {1.8, 1.0}, .to = {2.4, 1.0}, .power = 0, .first = 3, .cycles = 8};
+  tilted.horizontal = HorizontalMotion{.amplitude = 0.3};
+  EXPECT_EQ(version(steady), 1);
+  EXPECT_EQ(version(ramped), 2);
+  EXPECT_EQ(version(tilted), 2);
+  EXPECT_EQ(kSchemaVersion, 2);
+}
+
 TEST(H5mdFile, TheRecordOfTheDriveIsStored) {
   const TemporaryFolder folder;
   TrajectoryInfo info = experiment_info();
