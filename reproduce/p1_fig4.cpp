@@ -80,12 +80,12 @@ Slopes slopes_of(const StrengthSweep& crystal) {
 }
 
 /// Two power laws that meet, from random beds.
-std::optional<calibration::CurveFit> bend_of(const StrengthSweeps& all) {
+std::optional<calibration::CurveFit> bend_of(const HeightSweeps& all) {
   const auto points = points_of(all.random);
   return points.size() >= 6 ? fitted("slope_break", points) : std::nullopt;
 }
 
-std::vector<Target> targets_of(const StrengthSweeps& all, const std::optional<calibration::CurveFit>& bend) {
+std::vector<Target> targets_of(const HeightSweeps& all, const std::optional<calibration::CurveFit>& bend) {
   std::vector<Target> targets = {rise_of(all.random)};
   Target at{"(a) random: change of slope", "K_m 3.3 +- 0.8", "", Verdict::absent, ""};
   Target same{"(a) random: change of slope where convection begins",
@@ -131,60 +131,72 @@ std::string region(const char* name, double from, double to) {
   return fmt::format("set label '{}' at first {:.5g},graph 0.06 center\n", name, std::sqrt(from * to));
 }
 
-analysis::Figure figure_of(const StrengthSweeps& all, const std::optional<calibration::CurveFit>& bend) {
-  analysis::Figure f{.name = "p1-fig4", .title = "Granular temperature", .width = 720, .height = 450};
+/// A panel of the figure: points of one start at one height, borders of the regions, fitted line.
+/// \param index of the data block \param bend of random beds \param last K_m at the end of the axis
+std::string panel_of(const StrengthSweep& l, int layers, std::size_t index,
+                     const std::optional<calibration::CurveFit>& bend, double last) {
+  std::string plot = "unset arrow\nunset label\n" +
+                     analysis::figure_style::panel_title(
+                         static_cast<char>('a' + index),
+                         fmt::format("{}, N_l = {}", l.is_random() ? "random" : "crystal", layers));
+  if (l.is_random()) plot += analysis::figure_style::stated_x(kBreak);
+  if (l.convection) {
+    plot += border_of_region(l.convection->value) + region("B", l.convection->value, last);
+    const double a_from = 1.35;
+    if (l.is_random() || !l.first_slips || l.first_slips->value >= l.convection->value)
+      plot += region("A", a_from, l.convection->value);
+    else
+      plot += border_of_region(l.first_slips->value) + region("A_1", a_from, l.first_slips->value) +
+              region("A_2", l.first_slips->value, l.convection->value);
+  }
+  std::string law;
+  if (l.is_random() && bend) {
+    const double x = parameter(*bend, "x_b").value, y = std::log(bend->at(x));
+    plot += fmt::format("f(x) = exp({:.8g} + (x < {:.8g} ? {:.8g} : {:.8g})*log(x/{:.8g}))\n", y, x,
+                        parameter(*bend, "s_1").value, parameter(*bend, "s_2").value, x);
+    law = fmt::format(", [1.4:*] f(x) with lines lw {} lc rgb '#333333' notitle",
+                      analysis::figure_style::kCurve);
+  }
+  if (l.points.empty()) return plot + "plot NaN notitle\n";
+  return plot + fmt::format(
+                    "plot 'p1-fig4.dat' index {} using 1:2:3:4 with yerrorbars pt {} lc rgb '{}' notitle{}\n",
+                    index, symbol_of(l), colour_of(l), law);
+}
+
+analysis::Figure figure_of(const StrengthSweeps& all) {
+  const int rows = static_cast<int>(all.heights.size());
+  analysis::Figure f{
+      .name = "p1-fig4", .title = "Granular temperature", .width = 720, .height = 80 + 370 * rows};
   analysis::figure_style::Axis k_m{.label = "K_m = A^2 ω^2/(σ g)", .logarithmic = true},
       t_g{.label = "T_g/(m g σ)", .logarithmic = true};
-  for (const StrengthSweep* l : {&all.random, &all.crystal})
-    for (const SweepPoint& r : l->points) {
-      const Estimate t = r.mean_temperature();
-      k_m.show(r.k_m());
-      t_g.show(t.value);
-      t_g.show(t.high.value_or(t.value));
-    }
-  const analysis::figure_style::Panels panels(1, 2, f.width, f.height, 3);
+  for (const HeightSweeps& height : all.heights)
+    for (const StrengthSweep* l : {&height.random, &height.crystal})
+      for (const SweepPoint& r : l->points) {
+        const Estimate t = r.mean_temperature();
+        k_m.show(r.k_m());
+        t_g.show(t.value);
+        t_g.show(t.high.value_or(t.value));
+      }
+  const analysis::figure_style::Panels panels(all.heights.size(), 2, f.width, f.height, 3);
   f.plot = analysis::figure_style::Panels::begin() + analysis::figure_style::axes(k_m, t_g);
   const double last = k_m.with_margin().high, floor = t_g.with_margin().low;
-  // One panel per start: points, borders of the regions, fitted line.
-  int index = 0;
-  for (const StrengthSweep* l : {&all.random, &all.crystal}) {
-    f.data += fmt::format("# {}: K_m, T_g*, low, high, convecting share\n", l->start);
-    for (const SweepPoint& r : l->points) {
-      const Estimate t = r.mean_temperature();
-      f.data += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g} {:.3g}\n", r.k_m(), t.value,
-                            std::max(t.low.value_or(t.value), floor), t.high.value_or(t.value),
-                            static_cast<double>(r.convecting) / static_cast<double>(r.runs));
+  std::size_t index = 0;
+  for (const HeightSweeps& height : all.heights) {
+    const auto bend = bend_of(height);
+    for (const StrengthSweep* l : {&height.random, &height.crystal}) {
+      f.data +=
+          fmt::format("# {}, N_l = {}: K_m, T_g*, low, high, convecting share\n", l->start, height.layers);
+      for (const SweepPoint& r : l->points) {
+        const Estimate t = r.mean_temperature();
+        f.data += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g} {:.3g}\n", r.k_m(), t.value,
+                              std::max(t.low.value_or(t.value), floor), t.high.value_or(t.value),
+                              static_cast<double>(r.convecting) / static_cast<double>(r.runs));
+      }
+      if (l->points.empty()) f.data += "? ? ? ? ?\n";
+      f.data += "\n\n";
+      f.plot += panels.panel(index) + panel_of(*l, height.layers, index, bend, last);
+      ++index;
     }
-    if (l->points.empty()) f.data += "? ? ? ? ?\n";
-    f.data += "\n\n";
-    f.plot += panels.panel(static_cast<std::size_t>(index)) + "unset arrow\nunset label\n" +
-              analysis::figure_style::panel_title(
-                  l->is_random() ? 'a' : 'b',
-                  fmt::format("{}, N_l = {}", l->is_random() ? "random" : "crystal", all.layers));
-    if (l->is_random()) f.plot += analysis::figure_style::stated_x(kBreak);
-    if (l->convection) {
-      f.plot += border_of_region(l->convection->value) + region("B", l->convection->value, last);
-      const double a_from = 1.35;
-      if (l->is_random() || !l->first_slips || l->first_slips->value >= l->convection->value)
-        f.plot += region("A", a_from, l->convection->value);
-      else
-        f.plot += border_of_region(l->first_slips->value) + region("A_1", a_from, l->first_slips->value) +
-                  region("A_2", l->first_slips->value, l->convection->value);
-    }
-    std::string law;
-    if (l->is_random() && bend) {
-      const double x = parameter(*bend, "x_b").value, y = std::log(bend->at(x));
-      f.plot += fmt::format("f(x) = exp({:.8g} + (x < {:.8g} ? {:.8g} : {:.8g})*log(x/{:.8g}))\n", y, x,
-                            parameter(*bend, "s_1").value, parameter(*bend, "s_2").value, x);
-      law = fmt::format(", [1.4:*] f(x) with lines lw {} lc rgb '#333333' notitle",
-                        analysis::figure_style::kCurve);
-    }
-    f.plot += l->points.empty()
-                  ? std::string("plot NaN notitle\n")
-                  : fmt::format(
-                        "plot '{}.dat' index {} using 1:2:3:4 with yerrorbars pt {} lc rgb '{}' notitle{}\n",
-                        f.name, index, symbol_of(*l), colour_of(*l), law);
-    ++index;
   }
   f.plot +=
       panels.end({key_of_starts(),
@@ -192,9 +204,11 @@ analysis::Figure figure_of(const StrengthSweeps& all, const std::optional<calibr
                               analysis::figure_style::kCurve),
                   key_of_border(), analysis::figure_style::stated_line_entry("paper: bend at K_m = 3.3")});
   f.caption =
-      "T_g* against K_m from random beds (a) and crystals (b), mean over runs with 95 % intervals. Thin "
+      "T_g* against K_m from random beds (left) and crystals (right), mean over runs with 95 % intervals. "
+      "Thin "
       "dashed: "
-      "onset of convection (s_c > σ), right of which is region B; in (b) also the first slips, left of which "
+      "onset of convection (s_c > σ), right of which is region B; for crystals also the first slips, left of "
+      "which "
       "is A1. "
       "Line: two power laws that meet. Thick dashed: where the paper's slope changes. Form of Fortini & "
       "Huang 2015, "
@@ -204,16 +218,15 @@ analysis::Figure figure_of(const StrengthSweeps& all, const std::optional<calibr
 
 Reproduction run(const Request& request) {
   const StrengthSweeps all = strength_sweeps(request);
-  const auto bend = bend_of(all);
   Reproduction r = reproduction_of(all, "Fortini & Huang 2015, Fig. 4: granular temperature against K_m");
-  r.targets = targets_of(all, bend);
-  r.figures = {figure_of(all, bend)};
+  r.targets = targets_at_heights(all, temperature_targets);
+  r.figures = {figure_of(all)};
   return r;
 }
 
 }  // namespace
 
-std::vector<Target> temperature_targets(const StrengthSweeps& sweeps) {
+std::vector<Target> temperature_targets(const HeightSweeps& sweeps) {
   return targets_of(sweeps, bend_of(sweeps));
 }
 

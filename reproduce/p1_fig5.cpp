@@ -30,7 +30,7 @@ std::vector<calibration::DataPoint> points_of(const StrengthSweep& sweep, double
 struct Barriers {
   std::optional<calibration::CurveFit> random, random_bent, a2, b;
 };
-Barriers barriers_of(const StrengthSweeps& all) {
+Barriers barriers_of(const HeightSweeps& all) {
   Barriers fits;
   fits.random = fitted("arrhenius", points_of(all.random));
   fits.random_bent = fitted("arrhenius_break", points_of(all.random));
@@ -54,7 +54,7 @@ Target barrier_target(const std::string& name, const std::optional<calibration::
   return t;
 }
 
-std::vector<Target> targets_of(const StrengthSweeps& all, const Barriers& fits) {
+std::vector<Target> targets_of(const HeightSweeps& all, const Barriers& fits) {
   std::vector<Target> targets;
   constexpr const char* kFew = "fewer than two points with slips";
   targets.push_back(barrier_target("(a) random, whole range", fits.random, kBarrier, kBarrierError, kFew));
@@ -162,73 +162,84 @@ std::string barrier_label(const char* of, const std::optional<calibration::Curve
                      parameter(*fit, "E_b").value, paper, 0.93 - 0.09 * line);
 }
 
-analysis::Figure figure_of(const StrengthSweeps& all, const Barriers& fits) {
-  analysis::Figure f{.name = "p1-fig5", .title = "Slip probability", .width = 720, .height = 430};
-  const analysis::figure_style::Panels panels(1, 2, f.width, f.height, 2);
+/// A panel of the figure: counted slips, upper limits where the bed bounces, borders of the regions,
+/// Arrhenius lines. \param index of the panel; its two data blocks are appended to `data`
+std::string panel_of(const StrengthSweep& l, int layers, std::size_t index, const Barriers& fits,
+                     const analysis::figure_style::Axis& p_s, std::string& data) {
+  analysis::figure_style::Axis inverse{.label = "1/K_m", .low = 0};
+  std::string counted, none;
+  for (const SweepPoint& r : l.points) {
+    if (!(r.eligible > 0)) continue;
+    if (r.slips > 0)
+      counted += fmt::format("{:.6g} {:.6g}\n", 1 / r.k_m(), r.p_s());
+    else if (r.bouncing > 0)
+      none += fmt::format("{:.6g} {:.6g}\n", 1 / r.k_m(), r.upper_limit());
+    if (r.slips > 0 || r.bouncing > 0) inverse.show(1 / r.k_m());
+  }
+  data += fmt::format(
+      "# {0}, N_l = {1}: 1/K_m, p_s\n{2}\n\n# {0}, N_l = {1}, no slip: 1/K_m, 95 % upper limit of "
+      "p_s\n{3}\n\n",
+      l.start, layers, counted.empty() ? "? ?\n" : counted, none.empty() ? "? ?\n" : none);
+  std::string plot = analysis::figure_style::axes(inverse, p_s) + "unset arrow\nunset label\n" +
+                     analysis::figure_style::panel_title(
+                         static_cast<char>('a' + index),
+                         fmt::format("{}, N_l = {}", l.is_random() ? "random" : "crystal", layers));
+  std::string lines;
+  const auto name = [&](const char* region, double from, double to) {
+    plot +=
+        fmt::format("set label '{}' at first {:.5g},graph 0.06 center\n", region, (1 / from + 1 / to) / 2);
+  };
+  const double last = l.points.empty() ? 30 : l.points.back().k_m(), first = 1.34;
+  if (l.convection) {
+    plot += border_of_region(1 / l.convection->value);
+    name("B", l.convection->value, 1e3);
+  }
+  if (l.is_random()) {
+    const auto points = points_of(l);
+    lines = lines_of(fits.random, points, kBarrier, points.empty() ? first : points.front().x, last);
+    plot += barrier_label("", fits.random, kBarrier, 0);
+    if (l.convection) name("A", l.convection->value, first);
+  } else if (l.convection) {
+    const double onset = l.convection->value, slips = l.first_slips ? *l.first_slips->high : first;
+    lines = lines_of(fits.a2, points_of(l, 0, onset), kNucleation, std::min(slips, onset), onset) +
+            lines_of(fits.b, points_of(l, onset), kBarrier, onset, last);
+    plot += barrier_label("A_2: ", fits.a2, kNucleation, 0) + barrier_label("B: ", fits.b, kBarrier, 1);
+    if (l.first_slips && l.first_slips->value < onset) {
+      plot += border_of_region(1 / l.first_slips->value);
+      name("A_2", onset, l.first_slips->value);
+      name("A_1", l.first_slips->value, first);
+    }
+  }
+  std::string clauses = "NaN notitle";
+  const auto points = [&](const std::string& block, std::size_t which, int symbol) {
+    if (!block.empty())
+      clauses += fmt::format(", 'p1-fig5.dat' index {} using 1:2 with points pt {} lc rgb '{}' notitle",
+                             which, symbol, colour_of(l));
+  };
+  points(counted, 2 * index, symbol_of(l));
+  points(none, 2 * index + 1, kLimitSymbol);
+  return plot + fmt::format("plot {}{}\n", clauses, lines);
+}
+
+analysis::Figure figure_of(const StrengthSweeps& all) {
+  const int rows = static_cast<int>(all.heights.size());
+  analysis::Figure f{.name = "p1-fig5", .title = "Slip probability", .width = 720, .height = 60 + 370 * rows};
+  const analysis::figure_style::Panels panels(all.heights.size(), 2, f.width, f.height, 2);
   f.plot = analysis::figure_style::Panels::begin();
   analysis::figure_style::Axis p_s{.label = "p_s", .logarithmic = true};
-  for (const StrengthSweep* l : {&all.random, &all.crystal})
-    for (const SweepPoint& r : l->points)
-      if (r.eligible > 0) p_s.show(r.slips > 0 ? r.p_s() : r.upper_limit());
+  for (const HeightSweeps& height : all.heights)
+    for (const StrengthSweep* l : {&height.random, &height.crystal})
+      for (const SweepPoint& r : l->points)
+        if (r.eligible > 0) p_s.show(r.slips > 0 ? r.p_s() : r.upper_limit());
   p_s.show(3);            // above the points, for the barriers
   p_s.show(p_s.low / 5);  // below them, for the names of the regions
-  // One panel per start: counted slips, upper limits where the bed bounces, borders of the regions, Arrhenius
-  // lines.
-  int index = 0;
-  for (const StrengthSweep* l : {&all.random, &all.crystal}) {
-    analysis::figure_style::Axis inverse{.label = "1/K_m", .low = 0};
-    std::string counted, none;
-    for (const SweepPoint& r : l->points) {
-      if (!(r.eligible > 0)) continue;
-      if (r.slips > 0)
-        counted += fmt::format("{:.6g} {:.6g}\n", 1 / r.k_m(), r.p_s());
-      else if (r.bouncing > 0)
-        none += fmt::format("{:.6g} {:.6g}\n", 1 / r.k_m(), r.upper_limit());
-      if (r.slips > 0 || r.bouncing > 0) inverse.show(1 / r.k_m());
+  std::size_t index = 0;
+  for (const HeightSweeps& height : all.heights) {
+    const Barriers fits = barriers_of(height);
+    for (const StrengthSweep* l : {&height.random, &height.crystal}) {
+      f.plot += panels.panel(index) + panel_of(*l, height.layers, index, fits, p_s, f.data);
+      ++index;
     }
-    f.data +=
-        fmt::format("# {}: 1/K_m, p_s\n{}\n\n# {}, no slip: 1/K_m, 95 % upper limit of p_s\n{}\n\n", l->start,
-                    counted.empty() ? "? ?\n" : counted, l->start, none.empty() ? "? ?\n" : none);
-    const double last = l->points.empty() ? 30 : l->points.back().k_m(), first = 1.34;
-    f.plot += panels.panel(static_cast<std::size_t>(index / 2)) + analysis::figure_style::axes(inverse, p_s) +
-              "unset arrow\nunset label\n" +
-              analysis::figure_style::panel_title(
-                  l->is_random() ? 'a' : 'b',
-                  fmt::format("{}, N_l = {}", l->is_random() ? "random" : "crystal", all.layers));
-    std::string lines;
-    const auto name = [&](const char* region, double from, double to) {
-      f.plot +=
-          fmt::format("set label '{}' at first {:.5g},graph 0.06 center\n", region, (1 / from + 1 / to) / 2);
-    };
-    if (l->convection) {
-      f.plot += border_of_region(1 / l->convection->value);
-      name("B", l->convection->value, 1e3);
-    }
-    if (l->is_random()) {
-      const auto points = points_of(*l);
-      lines = lines_of(fits.random, points, kBarrier, points.empty() ? first : points.front().x, last);
-      f.plot += barrier_label("", fits.random, kBarrier, 0);
-      if (l->convection) name("A", l->convection->value, first);
-    } else if (l->convection) {
-      const double onset = l->convection->value, slips = l->first_slips ? *l->first_slips->high : first;
-      lines = lines_of(fits.a2, points_of(*l, 0, onset), kNucleation, std::min(slips, onset), onset) +
-              lines_of(fits.b, points_of(*l, onset), kBarrier, onset, last);
-      f.plot += barrier_label("A_2: ", fits.a2, kNucleation, 0) + barrier_label("B: ", fits.b, kBarrier, 1);
-      if (l->first_slips && l->first_slips->value < onset) {
-        f.plot += border_of_region(1 / l->first_slips->value);
-        name("A_2", onset, l->first_slips->value);
-        name("A_1", l->first_slips->value, first);
-      }
-    }
-    std::string clauses = "NaN notitle";
-    if (!counted.empty())
-      clauses += fmt::format(", '{}.dat' index {} using 1:2 with points pt {} lc rgb '{}' notitle", f.name,
-                             index, symbol_of(*l), colour_of(*l));
-    if (!none.empty())
-      clauses += fmt::format(", '{}.dat' index {} using 1:2 with points pt {} lc rgb '{}' notitle", f.name,
-                             index + 1, kLimitSymbol, colour_of(*l));
-    f.plot += fmt::format("plot {}{}\n", clauses, lines);
-    index += 2;
   }
   f.plot += panels.end(
       {key_of_starts(),
@@ -237,7 +248,8 @@ analysis::Figure figure_of(const StrengthSweeps& all, const Barriers& fits) {
                    analysis::figure_style::kCurve),
        key_of_border(), analysis::figure_style::stated_line_entry("paper’s E_b")});
   f.caption =
-      "Slip probability against 1/K_m from random beds (a) and crystals (b), counted over all runs; open "
+      "Slip probability against 1/K_m from random beds (left) and crystals (right), counted over all runs; "
+      "open "
       "symbols: no "
       "slip in a bed that bounces, drawn at the 95 % limit. The points have no error bars: slips come in "
       "rows of "
@@ -251,16 +263,15 @@ analysis::Figure figure_of(const StrengthSweeps& all, const Barriers& fits) {
 
 Reproduction run(const Request& request) {
   const StrengthSweeps all = strength_sweeps(request);
-  const Barriers fits = barriers_of(all);
   Reproduction r = reproduction_of(all, "Fortini & Huang 2015, Fig. 5: slip probability against 1/K_m");
-  r.targets = targets_of(all, fits);
-  r.figures = {figure_of(all, fits)};
+  r.targets = targets_at_heights(all, slip_targets);
+  r.figures = {figure_of(all)};
   return r;
 }
 
 }  // namespace
 
-std::vector<Target> slip_targets(const StrengthSweeps& sweeps) {
+std::vector<Target> slip_targets(const HeightSweeps& sweeps) {
   return targets_of(sweeps, barriers_of(sweeps));
 }
 

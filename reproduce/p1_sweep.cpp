@@ -8,11 +8,14 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <utility>
 
 #include "analysis/motion/phase_thresholds.hpp"
 #include "analysis/report/colours.hpp"
 #include "analysis/report/figure_style.hpp"
 #include "analysis/statistics/statistics.hpp"
+#include "core/counted.hpp"
 #include "core/json_text.hpp"
 #include "reproduce/p1_scene.hpp"
 
@@ -22,22 +25,24 @@ namespace {
 
 using nlohmann::json;
 
-/// Extent of the study at a given budget. The paper does not state N_l of its Figs. 4 and 5.
+/// Extent of the study at a given budget.
 struct Size {
   double core_minutes;
-  int layers, cycles, seeds, every;  ///< every: use every n-th point
+  std::size_t heights;       ///< how many of kHeights
+  int cycles, seeds, every;  ///< every: use every n-th point
 };
+constexpr std::array<int, 3> kHeights = {20, 40, 60};
 constexpr int kPaperCycles = 200;
 constexpr double kOnsetWidth = 0.2;  ///< in Gamma; about the spacing of points
 
 const Size& size_for(const Request& request, double share) {
-  static constexpr std::array<Size, 7> all = {{{0, 20, 30, 1, 4},
-                                               {1, 20, 60, 1, 2},
-                                               {6, 20, 200, 1, 1},
-                                               {20, 20, 200, 3, 1},
-                                               {120, 40, 200, 3, 1},
-                                               {500, 60, 200, 4, 1},
-                                               {1e300, 60, 200, 10, 1}}};
+  static constexpr std::array<Size, 7> all = {{{0, 1, 30, 1, 4},
+                                               {1, 1, 60, 1, 2},
+                                               {6, 1, 200, 1, 1},
+                                               {20, 1, 200, 3, 1},
+                                               {120, 2, 200, 3, 1},
+                                               {500, 3, 200, 3, 1},
+                                               {1e300, 3, 200, 10, 1}}};
   if (request.full) return all.back();
   const Size* chosen = &all.front();
   for (const Size& size : all)
@@ -187,11 +192,12 @@ namespace {
 
 std::string runs_text_of(const StrengthSweeps& sweeps, int cycles) {
   std::size_t least = 0, most = 0;
-  for (const StrengthSweep* sweep : {&sweeps.random, &sweeps.crystal})
-    for (const SweepPoint& p : sweep->points) {
-      least = most == 0 ? p.runs : std::min(least, p.runs);
-      most = std::max(most, p.runs);
-    }
+  for (const HeightSweeps& height : sweeps.heights)
+    for (const StrengthSweep* sweep : {&height.random, &height.crystal})
+      for (const SweepPoint& p : sweep->points) {
+        least = most == 0 ? p.runs : std::min(least, p.runs);
+        most = std::max(most, p.runs);
+      }
   if (most == 0) return "no run";
   std::string s = least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
   s += most == 1 ? " run a point" : " runs a point";
@@ -220,10 +226,14 @@ StrengthSweeps stored_sweeps(const std::string& stored) {
         if (t.at("high").is_number()) e.high = t.at("high").get<double>();
       }
     }
-    all.layers = sweep.at("layers").get<int>();
+    const int layers = sweep.at("layers").get<int>();
+    if (all.heights.empty() || all.heights.back().layers != layers)
+      all.heights.push_back({.layers = layers, .random = {}, .crystal = {}});
     const auto start = sweep.at("start").get<std::string>();
-    (start == "random" ? all.random : all.crystal) = find_regions(start, std::move(points));
+    (start == "random" ? all.heights.back().random : all.heights.back().crystal) =
+        find_regions(start, std::move(points));
   }
+  if (all.heights.empty()) all.heights.push_back({.layers = kHeights.front(), .random = {}, .crystal = {}});
   all.runs_text = runs_text_of(all, 0);
   return all;
 }
@@ -234,24 +244,37 @@ StrengthSweeps strength_sweeps(const Request& request, const std::string& keys, 
   if (!request.stored.empty()) return stored_sweeps(request.stored);
   const Size& size = size_for(request, share);
   const sweep::Store store(request.runs);
-  const P1Run random{size.layers, "random", size.cycles, 10, keys},
-      crystal{size.layers, "crystal_a", size.cycles, 10, keys};
-  const sweep::Plan of_random = plan_of(size, random, request.seed),
-                    of_crystal = plan_of(size, crystal, request.seed);
-  sweep::Schedule r(of_random, store), c(of_crystal, store);
   StrengthSweeps all;
-  all.layers = size.layers;
-  all.complete = run_here({&r, &c}, store, {request.threads, false}, *request.watch);
-  all.random = strength_sweep_of("random", r);
-  all.crystal = strength_sweep_of("crystal_a", c);
+  all.complete = true;
+  for (const int layers : std::span(kHeights).first(size.heights)) {
+    const P1Run random{layers, "random", size.cycles, 10, keys},
+        crystal{layers, "crystal_a", size.cycles, 10, keys};
+    const sweep::Plan of_random = plan_of(size, random, request.seed),
+                      of_crystal = plan_of(size, crystal, request.seed);
+    sweep::Schedule r(of_random, store), c(of_crystal, store);
+    // Once the time has run out, only results of earlier calls are read.
+    if (all.complete) all.complete = run_here({&r, &c}, store, {request.threads, false}, *request.watch);
+    HeightSweeps height{.layers = layers,
+                        .random = strength_sweep_of("random", r),
+                        .crystal = strength_sweep_of("crystal_a", c)};
+    if (all.heights.empty() || !height.random.points.empty() || !height.crystal.points.empty())
+      all.heights.push_back(std::move(height));
+  }
   all.runs_text = runs_text_of(all, size.cycles);
-  all.conditions = p1_conditions(crystal);
+  all.conditions = p1_conditions({kHeights.front(), "crystal_a", size.cycles, 10, keys});
   all.conditions.emplace_back(
       "T_g* is a time average, from 400 samples a cycle, which does not hang on the phases of the frames");
+  std::vector<int> measured;
+  for (const HeightSweeps& height : all.heights) measured.push_back(height.layers);
   all.conditions.push_back(
-      fmt::format("N_l = {} (the paper does not state that of Figs. 4 and 5); {} run{} of each start and "
-                  "strength, seeds drawn from the master seed {}",
-                  size.layers, size.seeds, size.seeds == 1 ? "" : "s", request.seed));
+      fmt::format("N_l = {} (the paper does not state that of Figs. 4 and 5); {} of each start and strength, "
+                  "seeds drawn from the master seed {}",
+                  fmt::join(measured, ", "), counted(size.seeds, "run"), request.seed));
+  if (all.heights.size() > 1)
+    all.conditions.push_back(fmt::format(
+        "both figures show one bed: the verdicts are those at N_l = {}, the height that meets most "
+        "of their targets",
+        all.heights[counted_height(all)].layers));
   all.conditions.emplace_back(
       "A1: no slip; B: above the onset of convection, s_c > sigma, by logistic regression over runs; A2 in "
       "between");
@@ -265,8 +288,8 @@ StrengthSweeps strength_sweeps(const Request& request, const std::string& keys, 
     all.cheaper.push_back(
         fmt::format("every {} strength of the drive", size.every == 2 ? "second" : "fourth"));
   if (size.seeds < 4)
-    all.cheaper.push_back(fmt::format("{} seed{}: random beds differ by as much as onsets do", size.seeds,
-                                      size.seeds == 1 ? "" : "s"));
+    all.cheaper.push_back(
+        fmt::format("{}: random beds differ by as much as onsets do", counted(size.seeds, "seed")));
   return all;
 }
 
@@ -274,46 +297,87 @@ namespace {
 
 std::string text_of(const StrengthSweeps& sweeps) {
   std::string text;
-  for (const StrengthSweep* l : {&sweeps.random, &sweeps.crystal}) {
-    text += fmt::format("  {}, N_l = {}\n  {:>6} {:>7} {:>5} {:>24} {:>10} {:>20}\n",
-                        l->is_random() ? "random" : "crystal", sweeps.layers, "Gamma", "K_m", "runs", "T_g*",
-                        "convecting", "slips");
-    for (const SweepPoint& r : l->points)
-      text += fmt::format("  {:6.2f} {:7.3f} {:5} {:>24} {:>10} {:>20}\n", r.gamma, r.k_m(), r.runs,
-                          r.mean_temperature().text(), r.convecting,
-                          fmt::format("{:.0f} of {:.0f}", r.slips, r.eligible));
-    text += fmt::format("  convection from K_m {}; first slips at K_m {}\n", or_dash(l->convection),
-                        or_dash(l->first_slips));
-  }
+  for (const HeightSweeps& height : sweeps.heights)
+    for (const StrengthSweep* l : {&height.random, &height.crystal}) {
+      text += fmt::format("  {}, N_l = {}\n  {:>6} {:>7} {:>5} {:>24} {:>10} {:>20}\n",
+                          l->is_random() ? "random" : "crystal", height.layers, "Gamma", "K_m", "runs",
+                          "T_g*", "convecting", "slips");
+      for (const SweepPoint& r : l->points)
+        text += fmt::format("  {:6.2f} {:7.3f} {:5} {:>24} {:>10} {:>20}\n", r.gamma, r.k_m(), r.runs,
+                            r.mean_temperature().text(), r.convecting,
+                            fmt::format("{:.0f} of {:.0f}", r.slips, r.eligible));
+      text += fmt::format("  convection from K_m {}; first slips at K_m {}\n", or_dash(l->convection),
+                          or_dash(l->first_slips));
+    }
   return text;
+}
+
+json json_of(const StrengthSweep& sweep, int layers) {
+  json points = json::array();
+  for (const SweepPoint& r : sweep.points) {
+    json temperatures = json::array();
+    for (const Estimate& t : r.temperature) temperatures.push_back(as_json(t));
+    points.push_back({{"gamma", r.gamma},
+                      {"k_m", r.k_m()},
+                      {"T_g", temperatures},
+                      {"slips", r.slips},
+                      {"bead_periods", r.eligible},
+                      {"runs", r.runs},
+                      {"bouncing", r.bouncing},
+                      {"convecting", r.convecting}});
+  }
+  return {{"start", sweep.start},
+          {"layers", layers},
+          {"points", points},
+          {"convection_k_m", as_json(sweep.convection)},
+          {"first_slips_k_m", as_json(sweep.first_slips)}};
 }
 
 std::string json_of(const StrengthSweeps& sweeps) {
   json all = json::array();
-  for (const StrengthSweep* l : {&sweeps.random, &sweeps.crystal}) {
-    json points = json::array();
-    for (const SweepPoint& r : l->points) {
-      json temperatures = json::array();
-      for (const Estimate& t : r.temperature) temperatures.push_back(as_json(t));
-      points.push_back({{"gamma", r.gamma},
-                        {"k_m", r.k_m()},
-                        {"T_g", temperatures},
-                        {"slips", r.slips},
-                        {"bead_periods", r.eligible},
-                        {"runs", r.runs},
-                        {"bouncing", r.bouncing},
-                        {"convecting", r.convecting}});
-    }
-    all.push_back({{"start", l->start},
-                   {"layers", sweeps.layers},
-                   {"points", points},
-                   {"convection_k_m", as_json(l->convection)},
-                   {"first_slips_k_m", as_json(l->first_slips)}});
-  }
+  for (const HeightSweeps& height : sweeps.heights)
+    for (const StrengthSweep* l : {&height.random, &height.crystal})
+      all.push_back(json_of(*l, height.layers));
   return json_text(all);
 }
 
+bool met(const Target& t) {
+  return t.verdict == Verdict::pass || t.verdict == Verdict::consistent;
+}
+
 }  // namespace
+
+std::size_t counted_height(const StrengthSweeps& sweeps) {
+  // Met and failed targets of both figures; more of the first and fewer of the second are better.
+  const auto merit = [](const HeightSweeps& height) {
+    std::ptrdiff_t good = 0, bad = 0;
+    for (const auto& targets : {temperature_targets(height), slip_targets(height)}) {
+      good += std::count_if(targets.begin(), targets.end(), met);
+      bad += std::count_if(targets.begin(), targets.end(),
+                           [](const Target& t) { return t.verdict == Verdict::fail; });
+    }
+    return std::pair(good, -bad);
+  };
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < sweeps.heights.size(); ++i)
+    if (merit(sweeps.heights[i]) > merit(sweeps.heights[best])) best = i;
+  return best;
+}
+
+std::vector<Target> targets_at_heights(const StrengthSweeps& sweeps,
+                                       std::vector<Target> (*targets_at)(const HeightSweeps&)) {
+  std::vector<Target> targets = targets_at(sweeps.heights[counted_height(sweeps)]);
+  if (sweeps.heights.size() == 1) return targets;
+  for (Target& t : targets) t.measured.clear();
+  for (const HeightSweeps& height : sweeps.heights) {
+    const std::vector<Target> here = targets_at(height);
+    for (std::size_t k = 0; k < targets.size(); ++k)
+      targets[k].measured +=
+          fmt::format("{}N_l = {}: {}{}", targets[k].measured.empty() ? "" : "; ", height.layers,
+                      here[k].measured.empty() ? "" : here[k].measured + ", ", word_of(here[k].verdict));
+  }
+  return targets;
+}
 
 Reproduction reproduction_of(const StrengthSweeps& sweeps, const std::string& title) {
   Reproduction r;

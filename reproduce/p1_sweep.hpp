@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Sweeps of the drive strength at one bed height: the runs that Figs. 4 and 5 of Fortini & Huang 2015 share.
+/// Sweeps of the drive strength: the runs that Figs. 4 and 5 of Fortini & Huang 2015 share.
 
 #include <optional>
 #include <string>
@@ -60,22 +60,37 @@ StrengthSweep make_strength_sweep(const std::string& start, const std::vector<Sw
 StrengthSweep find_regions(const std::string& start, std::vector<SweepPoint> points);
 
 /// Sweeps from both starts at one bed height.
-struct StrengthSweeps {
+struct HeightSweeps {
   int layers = 0;
-  bool complete = false;
   StrengthSweep random, crystal;
+};
+
+/// Sweeps at one or several bed heights: the paper does not state that of Figs. 4 and 5.
+struct StrengthSweeps {
+  std::vector<HeightSweeps> heights;  ///< rising, not empty; of several, only those with runs
+  bool complete = false;
   std::string runs_text;  ///< seeds and cycles: "3 runs a point, 200 cycles"
   std::vector<std::string> conditions, cheaper;
 };
 
-/// Runs the sweeps, or reads the results that are in Request::runs or Request::stored. Small budgets mean
-/// fewer points, cycles and seeds, and lower beds. \param keys P1Run::keys \param share part of the budget
-/// that these sweeps may use
+/// Runs the sweeps, height by height, or reads the results that are in Request::runs or Request::stored.
+/// Small budgets mean fewer points, cycles, seeds and heights. \param keys P1Run::keys \param share part of
+/// the budget that these sweeps may use
 StrengthSweeps strength_sweeps(const Request& request, const std::string& keys = {}, double share = 1);
 
-/// Targets of Fig. 4 and of Fig. 5.
-std::vector<Target> temperature_targets(const StrengthSweeps& sweeps);
-std::vector<Target> slip_targets(const StrengthSweeps& sweeps);
+/// Targets of Fig. 4 and of Fig. 5 at one height; the same ones in the same order for each height.
+std::vector<Target> temperature_targets(const HeightSweeps& sweeps);
+std::vector<Target> slip_targets(const HeightSweeps& sweeps);
+
+/// Index of the height whose verdicts count. Both figures of the paper show one bed, so their targets are
+/// held against one height: the one that meets most of them (pass or consistent), then the one that fails
+/// fewest, then the lowest.
+std::size_t counted_height(const StrengthSweeps& sweeps);
+
+/// The targets of a figure, each once: what was measured at each height with its verdict there, and the
+/// verdict at counted_height().
+std::vector<Target> targets_at_heights(const StrengthSweeps& sweeps,
+                                       std::vector<Target> (*targets_at)(const HeightSweeps&));
 
 /// Common output of the figures: K_m, T_g and slips of every point as text and as JSON, and the conditions.
 Reproduction reproduction_of(const StrengthSweeps& sweeps, const std::string& title);

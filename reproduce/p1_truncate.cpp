@@ -23,9 +23,9 @@ constexpr std::array<Rule, 2> kRules = {
 
 /// Targets of both figures under one rule.
 std::vector<Target> targets_of(const Rule& rule, const StrengthSweeps& sweeps) {
-  std::vector<Target> all = temperature_targets(sweeps);
+  std::vector<Target> all = targets_at_heights(sweeps, temperature_targets);
   for (Target& t : all) t.name = "Fig. 4 " + t.name;
-  for (Target& t : slip_targets(sweeps)) {
+  for (Target& t : targets_at_heights(sweeps, slip_targets)) {
     t.name = "Fig. 5 " + t.name;
     all.push_back(t);
   }

@@ -75,5 +75,29 @@ TEST(Targets, ASweepWithSlipsFromTheFirstBouncingPointHasNoRegionA1) {
   EXPECT_FALSE(make_strength_sweep("crystal_a", {}).convection);
 }
 
+// One height has the barriers that the paper states, the other one slips from the first bouncing point on.
+TEST(Targets, OfSeveralHeightsTheOneThatMeetsMostCounts) {
+  auto slipping = paper_like_crystal();
+  for (SweepRun& run : slipping)
+    if (run.gamma > 1.16) run.slips = std::max(run.slips, 1.0);
+  const HeightSweeps other{20, make_strength_sweep("random", {}), make_strength_sweep("crystal_a", slipping)},
+      paper{40, make_strength_sweep("random", {}), make_strength_sweep("crystal_a", paper_like_crystal())};
+  const StrengthSweeps both{.heights = {other, paper}};
+  ASSERT_EQ(counted_height(both), 1);
+  EXPECT_EQ(counted_height({.heights = {paper, other}}), 0);
+  EXPECT_EQ(counted_height({.heights = {paper, paper}}), 0);
+  const auto counted = targets_at_heights(both, slip_targets), alone = slip_targets(paper);
+  ASSERT_EQ(counted.size(), alone.size());
+  for (std::size_t k = 0; k < counted.size(); ++k) {
+    EXPECT_EQ(counted[k].name, alone[k].name);
+    EXPECT_EQ(counted[k].verdict, alone[k].verdict) << counted[k].name;
+    EXPECT_NE(counted[k].measured.find("N_l = 20: "), std::string::npos) << counted[k].measured;
+    EXPECT_NE(counted[k].measured.find("; N_l = 40: " + alone[k].measured), std::string::npos)
+        << counted[k].measured;
+  }
+  const StrengthSweeps one{.heights = {paper}};
+  EXPECT_EQ(targets_at_heights(one, slip_targets).front().measured, alone.front().measured);
+}
+
 }  // namespace
 }  // namespace twincell::reproduce
