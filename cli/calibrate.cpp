@@ -18,12 +18,28 @@
 #include "core/output_rules.hpp"
 #include "core/sha256.hpp"
 
+// The list: a kind of calibration is calibrate_NAME.cpp, which defines add_calibrate_NAME. Order of --help:
+// each kind can use the results of the earlier ones.
+#define TWINCELL_KINDS(EACH) \
+  EACH(camera)               \
+  EACH(walls)                \
+  EACH(plate)                \
+  EACH(beads)                \
+  EACH(contacts)
+
 namespace twincell::cli {
+
+#define TWINCELL_DECLARE(name) void add_calibrate_##name(CLI::App& calibrate, Common& common);
+TWINCELL_KINDS(TWINCELL_DECLARE)
+#undef TWINCELL_DECLARE
+
 namespace {
 
-// Order of the list in --help: each kind can use the results of the earlier ones.
-constexpr AddKind kKinds[] = {add_calibrate_camera, add_calibrate_walls, add_calibrate_plate,
-                              add_calibrate_beads, add_calibrate_contacts};
+constexpr AddKind kKinds[] = {
+#define TWINCELL_ADDRESS(name) add_calibrate_##name,
+    TWINCELL_KINDS(TWINCELL_ADDRESS)
+#undef TWINCELL_ADDRESS
+};
 
 /// Calibrations of several kinds write their figures into one folder.
 Product calibration_figures() {

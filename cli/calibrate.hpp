@@ -74,12 +74,9 @@ std::string data_hash(const std::string& stack);
 /// A number for JSON; null if it is not finite.
 nlohmann::json finite(double value);
 
+/// Adds a kind of calibration: calibrate_NAME.cpp defines add_calibrate_NAME, the list in calibrate.cpp names
+/// it.
 using AddKind = void (*)(CLI::App& calibrate, Common& common);
-void add_calibrate_plate(CLI::App& calibrate, Common& common);
-void add_calibrate_walls(CLI::App& calibrate, Common& common);
-void add_calibrate_beads(CLI::App& calibrate, Common& common);
-void add_calibrate_camera(CLI::App& calibrate, Common& common);
-void add_calibrate_contacts(CLI::App& calibrate, Common& common);
 /// Adds `calibrate contacts infer`.
 void add_calibrate_infer(CLI::App& contacts, Common& common);
 

@@ -25,17 +25,50 @@
 #include "core/nearest_word.hpp"
 #include "imaging/stack/opencv_errors.hpp"
 
+// The list: a verb is NAME.cpp in this folder, which defines add_NAME. Order of --help: the verbs that a new
+// user needs come first.
+#define TWINCELL_VERBS(EACH) \
+  EACH(example)              \
+  EACH(new)                  \
+  EACH(locate)               \
+  EACH(track)                \
+  EACH(explain)              \
+  EACH(simulate)             \
+  EACH(render)               \
+  EACH(draw)                 \
+  EACH(analyze)              \
+  EACH(measure)              \
+  EACH(sweep)                \
+  EACH(reproduce)            \
+  EACH(calibrate)            \
+  EACH(match)                \
+  EACH(compare)              \
+  EACH(fit)                  \
+  EACH(info)                 \
+  EACH(validate)             \
+  EACH(export)               \
+  EACH(import)               \
+  EACH(cost)                 \
+  EACH(keys)                 \
+  EACH(help)                 \
+  EACH(man)                  \
+  EACH(completion)
+
+namespace twincell::cli {
+#define TWINCELL_DECLARE(name) void add_##name(CLI::App& program, Common& common);
+TWINCELL_VERBS(TWINCELL_DECLARE)
+#undef TWINCELL_DECLARE
+}  // namespace twincell::cli
+
 namespace {
 
 using namespace twincell;
 using namespace twincell::cli;
 
-// Order of the list in --help: the verbs that a new user needs come first.
 constexpr AddVerb kVerbs[] = {
-    add_example, add_new,     add_locate,  add_track,      add_explain,   add_simulate,  add_render,
-    add_draw,    add_analyze, add_measure, add_sweep,      add_reproduce, add_calibrate, add_match,
-    add_compare, add_fit,     add_info,    add_validate,   add_export,    add_import,    add_cost,
-    add_keys,    add_help,    add_man,     add_completion,
+#define TWINCELL_ADDRESS(name) add_##name,
+    TWINCELL_VERBS(TWINCELL_ADDRESS)
+#undef TWINCELL_ADDRESS
 };
 
 int complain(const std::string& sentence, ExitCode code) {

@@ -67,35 +67,7 @@ struct Reproducible {
                                  ///< them, and no time of its own
   std::string same_as = {};      ///< entry with the same targets: `--all` leaves this one out
 };
-/// All reproductions. To add one: its file, a declaration below, an entry in list.cpp, a test.
+/// All reproductions. To add one: its file with its test, and its word in the list of list.cpp.
 const std::vector<Reproducible>& list();
-
-Reproducible p1_fig1();
-Reproducible p1_fig2();
-Reproducible p1_fig3();
-Reproducible p1_fig4();
-Reproducible p1_fig5();
-Reproducible p1_table1();
-Reproducible p1_appendix();
-Reproducible p1_step();
-Reproducible p1_truncate();
-Reproducible p2_fig2();
-Reproducible p2_fig3();
-Reproducible p2_fig4();
-Reproducible p2_fig5();
-Reproducible p2_fig6();
-Reproducible p2_fig7();
-Reproducible p2_fig8();
-Reproducible p2_fig9();
-Reproducible p2_fig10();
-Reproducible p2_fig11();
-Reproducible p2_fig12();
-Reproducible p2_fig13();
-Reproducible p2_fig14();
-Reproducible p2_fig15();
-Reproducible p2_fig16();
-Reproducible p2_table1();
-Reproducible p2_table2();
-Reproducible p2_table3();
 
 }  // namespace twincell::reproduce
