@@ -1,6 +1,7 @@
 // twincell example DIR: copies the inputs of the documented examples into a folder.
 
 #include <fmt/format.h>
+#include <sys/auxv.h>
 
 #include <CLI/CLI.hpp>
 #include <array>
@@ -55,7 +56,11 @@ Product example_folder() {
 /// built. \throws InputError if neither exists
 fs::path data_folder() {
   std::error_code ec;
-  const fs::path program = fs::read_symlink("/proc/self/exe", ec);
+  fs::path program = fs::read_symlink("/proc/self/exe", ec);
+  // Without /proc, as in some chroots: the name under which the kernel started the program.
+  if (program.empty())
+    if (const unsigned long name = getauxval(AT_EXECFN); name != 0)
+      program = fs::absolute(reinterpret_cast<const char*>(name), ec);
   const fs::path installed = program.parent_path().parent_path() / "share/twincell/data_samples";
   for (const fs::path& folder : {installed, fs::path(TWINCELL_DATA_SAMPLES)})
     if (fs::is_directory(folder / "example", ec)) return folder;

@@ -21,6 +21,7 @@ printf 'preset = "fortini-huang-2015"\n[cell]\nwidth = 6\n[beads]\ncount = 30\n[
 "$program" simulate "$scratch/scene.toml" -o "$scratch/run.h5" -q >/dev/null
 "$program" analyze "$scratch/run.h5" --only q6 -q >/dev/null
 "$program" export "$scratch/run.h5" --to xyz -o "$scratch/run.xyz" -q >/dev/null
+PATH=$(realpath "$root")/usr/bin:$PATH "$(dirname "${BASH_SOURCE[0]}")/first_page.sh" "$root/usr/share/doc/twincell/first_hour.md" "$scratch/first"
 source "$root/usr/share/bash-completion/completions/twincell"
 COMP_WORDS=(twincell tr) COMP_CWORD=1
 _twincell
