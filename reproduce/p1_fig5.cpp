@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "analysis/report/figure_style.hpp"
@@ -168,18 +169,22 @@ std::string panel_of(const StrengthSweep& l, int layers, std::size_t index, cons
                      const analysis::figure_style::Axis& p_s, std::string& data) {
   analysis::figure_style::Axis inverse{.label = "1/K_m", .low = 0};
   std::string counted, none;
+  const double floor = p_s.with_margin().low;
   for (const SweepPoint& r : l.points) {
     if (!(r.eligible > 0)) continue;
-    if (r.slips > 0)
-      counted += fmt::format("{:.6g} {:.6g}\n", 1 / r.k_m(), r.p_s());
-    else if (r.bouncing > 0)
+    if (r.slips > 0) {
+      const Estimate e = r.slip_probability();
+      counted += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g}\n", 1 / r.k_m(), e.value,
+                             std::max(e.low.value_or(e.value), floor), e.high.value_or(e.value));
+    }
+    if (!(r.slips > 0) && r.bouncing > 0)
       none += fmt::format("{:.6g} {:.6g}\n", 1 / r.k_m(), r.upper_limit());
     if (r.slips > 0 || r.bouncing > 0) inverse.show(1 / r.k_m());
   }
   data += fmt::format(
-      "# {0}, N_l = {1}: 1/K_m, p_s\n{2}\n\n# {0}, N_l = {1}, no slip: 1/K_m, 95 % upper limit of "
+      "# {0}, N_l = {1}: 1/K_m, p_s, low, high\n{2}\n\n# {0}, N_l = {1}, no slip: 1/K_m, 95 % upper limit of "
       "p_s\n{3}\n\n",
-      l.start, layers, counted.empty() ? "? ?\n" : counted, none.empty() ? "? ?\n" : none);
+      l.start, layers, counted.empty() ? "? ? ? ?\n" : counted, none.empty() ? "? ?\n" : none);
   std::string plot = analysis::figure_style::axes(inverse, p_s) + "unset arrow\nunset label\n" +
                      analysis::figure_style::panel_title(
                          static_cast<char>('a' + index),
@@ -211,13 +216,13 @@ std::string panel_of(const StrengthSweep& l, int layers, std::size_t index, cons
     }
   }
   std::string clauses = "NaN notitle";
-  const auto points = [&](const std::string& block, std::size_t which, int symbol) {
+  const auto points = [&](const std::string& block, std::size_t which, const char* drawn, int symbol) {
     if (!block.empty())
-      clauses += fmt::format(", 'p1-fig5.dat' index {} using 1:2 with points pt {} lc rgb '{}' notitle",
-                             which, symbol, colour_of(l));
+      clauses += fmt::format(", 'p1-fig5.dat' index {} using {} pt {} lc rgb '{}' notitle", which, drawn,
+                             symbol, colour_of(l));
   };
-  points(counted, 2 * index, symbol_of(l));
-  points(none, 2 * index + 1, kLimitSymbol);
+  points(counted, 2 * index, "1:2:3:4 with yerrorbars", symbol_of(l));
+  points(none, 2 * index + 1, "1:2 with points", kLimitSymbol);
   return plot + fmt::format("plot {}{}\n", clauses, lines);
 }
 
@@ -248,16 +253,15 @@ analysis::Figure figure_of(const StrengthSweeps& all) {
                    analysis::figure_style::kCurve),
        key_of_border(), analysis::figure_style::stated_line_entry("paper’s E_b")});
   f.caption =
-      "Slip probability against 1/K_m from random beds (left) and crystals (right), counted over all runs; "
-      "open "
-      "symbols: no "
-      "slip in a bed that bounces, drawn at the 95 % limit. The points have no error bars: slips come in "
-      "rows of "
-      "beads, so their number does not give the error. Lines: Arrhenius laws, all points alike; thick "
-      "dashed: the "
-      "paper's barriers through the mean of the same points, as the paper states no prefactor. Thin dashed: "
-      "regions "
-      "of Fig. 4. Form of Fortini & Huang 2015, Fig. 5.";
+      "Slip probability against 1/K_m from random beds (left) and crystals (right), counted over all runs, "
+      "with "
+      "95 % intervals over the runs where there are several; open symbols: no slip in a bed that bounces, "
+      "drawn at "
+      "the 95 % limit. Lines: Arrhenius laws, all points alike; thick dashed: the paper's barriers through "
+      "the mean "
+      "of the same points, as the paper states no prefactor. Thin dashed: regions of Fig. 4. Form of Fortini "
+      "& "
+      "Huang 2015, Fig. 5.";
   return f;
 }
 

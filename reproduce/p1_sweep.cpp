@@ -144,6 +144,15 @@ Estimate SweepPoint::mean_temperature() const {
   return e;
 }
 
+Estimate SweepPoint::slip_probability() const {
+  Estimate e{p_s(), {}, {}};
+  if (const auto interval = analysis::mean_interval(p_s_of_runs, "runs")) {
+    e.low = interval->low;
+    e.high = interval->high;
+  }
+  return e;
+}
+
 StrengthSweep make_strength_sweep(const std::string& start, const std::vector<SweepRun>& runs) {
   std::map<double, SweepPoint> points;
   for (const SweepRun& run : runs) {
@@ -155,6 +164,7 @@ StrengthSweep make_strength_sweep(const std::string& start, const std::vector<Sw
     point.convecting += run.s_c > analysis::kConvectionThreshold ? 1 : 0;
     point.slips += run.slips;
     point.eligible += run.eligible;
+    if (run.eligible > 0) point.p_s_of_runs.push_back(run.slips / run.eligible);
   }
   std::vector<SweepPoint> rising;
   for (const auto& [gamma, point] : points) rising.push_back(point);
@@ -216,6 +226,7 @@ StrengthSweeps stored_sweeps(const std::string& stored) {
       point.gamma = p.at("gamma").get<double>();
       point.slips = p.at("slips").get<double>();
       point.eligible = p.at("bead_periods").get<double>();
+      point.p_s_of_runs = p.value("p_s_of_runs", std::vector<double>());
       point.runs = p.at("runs").get<std::size_t>();
       point.bouncing = p.at("bouncing").get<std::size_t>();
       point.convecting = p.at("convecting").get<std::size_t>();
@@ -322,6 +333,7 @@ json json_of(const StrengthSweep& sweep, int layers) {
                       {"T_g", temperatures},
                       {"slips", r.slips},
                       {"bead_periods", r.eligible},
+                      {"p_s_of_runs", r.p_s_of_runs},
                       {"runs", r.runs},
                       {"bouncing", r.bouncing},
                       {"convecting", r.convecting}});

@@ -18,6 +18,7 @@ inline constexpr const char* kStrengthSweepRuns = "p1-strength-sweep";
 struct SweepPoint {
   double gamma = 0;
   std::vector<Estimate> temperature;  ///< T_g* of each run, by block averages over cycles
+  std::vector<double> p_s_of_runs;    ///< p_s of each run with eligible beads; empty in documents before it
   double slips = 0, eligible = 0;     ///< over all runs: slips, and bead-periods counted
   std::size_t runs = 0, bouncing = 0, convecting = 0;
 
@@ -26,8 +27,11 @@ struct SweepPoint {
   /// Mean over runs, with a bootstrap interval over runs from three runs on. A single run keeps its own
   /// interval. \pre there is a run
   [[nodiscard]] Estimate mean_temperature() const;
-  /// Slip probability per bead and period.
+  /// Slip probability per bead and period, over all runs.
   [[nodiscard]] double p_s() const { return slips / eligible; }
+  /// The same with its interval over runs, if there are several. Rows of beads slip together, so the number
+  /// of slips alone does not give the error.
+  [[nodiscard]] Estimate slip_probability() const;
   /// 95 % upper limit of p_s if no slip was counted, 3/eligible.
   [[nodiscard]] double upper_limit() const { return 3 / eligible; }
 };

@@ -45,7 +45,7 @@ set logscale x
 set xtics autofreq
 set format x '10^{%T}'
 set ylabel 'T_g/(m g σ)'
-set yrange [1.60278014e-10:2.49614007]
+set yrange [1.59216735e-10:3.07644906]
 set logscale y
 set ytics autofreq
 set format y '10^{%T}'
@@ -57,10 +57,10 @@ unset arrow
 unset label
 set title '{/:Bold (a)} random, N_l = 20'
 set arrow from first 3.3,graph 0 to first 3.3,graph 1 nohead lw 1.5 dt 4 lc rgb '#555555'
-set arrow from first 4.7852,graph 0 to first 4.7852,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
-set label 'B' at first 12.935,graph 0.06 center
-set label 'A' at first 2.5416,graph 0.06 center
-f(x) = exp(-1.1092056 + (x < 5.0769107 ? 3.7772562 : 0.57845163)*log(x/5.0769107))
+set arrow from first 4.2539,graph 0 to first 4.2539,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
+set label 'B' at first 12.196,graph 0.06 center
+set label 'A' at first 2.3964,graph 0.06 center
+f(x) = exp(-1.1557895 + (x < 4.4827958 ? 4.3763963 : 0.70764311)*log(x/4.4827958))
 plot 'p1-fig4.dat' index 0 using 1:2:3:4 with yerrorbars pt 9 lc rgb '#009E73' notitle, [1.4:*] f(x) with lines lw 1.8 lc rgb '#333333' notitle
 set lmargin at screen 0.6167
 set rmargin at screen 0.9778
@@ -69,11 +69,11 @@ set bmargin at screen 0.3200
 unset arrow
 unset label
 set title '{/:Bold (b)} crystal, N_l = 20'
-set arrow from first 7.0889,graph 0 to first 7.0889,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
-set label 'B' at first 15.743,graph 0.06 center
-set arrow from first 4.4,graph 0 to first 4.4,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
-set label 'A_1' at first 2.4372,graph 0.06 center
-set label 'A_2' at first 5.5849,graph 0.06 center
+set arrow from first 7.9102,graph 0 to first 7.9102,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
+set label 'B' at first 16.63,graph 0.06 center
+set arrow from first 3.6,graph 0 to first 3.6,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
+set label 'A_1' at first 2.2045,graph 0.06 center
+set label 'A_2' at first 5.3363,graph 0.06 center
 plot 'p1-fig4.dat' index 1 using 1:2:3:4 with yerrorbars pt 7 lc rgb '#0072B2' notitle
 set lmargin at screen 0
 set rmargin at screen 1

@@ -49,18 +49,18 @@ unset logscale x
 set xtics 0.2
 set format x '%g'
 set ylabel 'p_s'
-set yrange [2.92665086e-06:5.10862424]
+set yrange [2.70901553e-06:5.12382994]
 set logscale y
 set ytics autofreq
 set format y '10^{%T}'
 unset arrow
 unset label
 set title '{/:Bold (a)} random, N_l = 20'
-set arrow from first 0.20898,graph 0 to first 0.20898,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
-set label 'B' at first 0.10499,graph 0.06 center
-set label 'E_b = 10.6 (paper 7)' at graph 0.97,0.930 right
-set label 'A' at first 0.47762,graph 0.06 center
-plot NaN notitle, 'p1-fig5.dat' index 0 using 1:2 with points pt 9 lc rgb '#009E73' notitle, [0.0330579:0.826446] exp(-1.144448 - 10.589866*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.0330579:0.826446] exp(-2.237251 - 7*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle
+set arrow from first 0.23508,graph 0 to first 0.23508,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
+set label 'B' at first 0.11804,graph 0.06 center
+set label 'E_b = 12.5 (paper 7)' at graph 0.97,0.930 right
+set label 'A' at first 0.49067,graph 0.06 center
+plot NaN notitle, 'p1-fig5.dat' index 0 using 1:2:3:4 with yerrorbars pt 9 lc rgb '#009E73' notitle, [0.0330579:0.826446] exp(-0.77596133 - 12.46085*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.0330579:0.826446] exp(-2.4383167 - 7*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle
 set lmargin at screen 0.6167
 set rmargin at screen 0.9778
 set tmargin at screen 0.9070
@@ -71,21 +71,21 @@ unset logscale x
 set xtics 0.1
 set format x '%g'
 set ylabel 'p_s'
-set yrange [2.92665086e-06:5.10862424]
+set yrange [2.70901553e-06:5.12382994]
 set logscale y
 set ytics autofreq
 set format y '10^{%T}'
 unset arrow
 unset label
 set title '{/:Bold (b)} crystal, N_l = 20'
-set arrow from first 0.14107,graph 0 to first 0.14107,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
-set label 'B' at first 0.071033,graph 0.06 center
-set label 'A_2: E_b = 75.9 (paper 130)' at graph 0.97,0.930 right
-set label 'B: E_b = 14.4 (paper 7)' at graph 0.97,0.840 right
-set arrow from first 0.22727,graph 0 to first 0.22727,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
-set label 'A_2' at first 0.18417,graph 0.06 center
-set label 'A_1' at first 0.48677,graph 0.06 center
-plot NaN notitle, 'p1-fig5.dat' index 2 using 1:2 with points pt 7 lc rgb '#0072B2' notitle, 'p1-fig5.dat' index 3 using 1:2 with points pt 10 lc rgb '#0072B2' notitle, [0.141065:0.206612] exp(8.6858071 - 75.852483*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.141065:0.206612] exp(18.185313 - 130*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle, [0.0330579:0.141065] exp(0.35690631 - 14.427465*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.0330579:0.141065] exp(-0.28109205 - 7*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle
+set arrow from first 0.12642,graph 0 to first 0.12642,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
+set label 'B' at first 0.06371,graph 0.06 center
+set label 'A_2: E_b = 74.4 (paper 130)' at graph 0.97,0.930 right
+set label 'B: E_b = 12.4 (paper 7)' at graph 0.97,0.840 right
+set arrow from first 0.27778,graph 0 to first 0.27778,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
+set label 'A_2' at first 0.2021,graph 0.06 center
+set label 'A_1' at first 0.51202,graph 0.06 center
+plot NaN notitle, 'p1-fig5.dat' index 2 using 1:2:3:4 with yerrorbars pt 7 lc rgb '#0072B2' notitle, 'p1-fig5.dat' index 3 using 1:2 with points pt 10 lc rgb '#0072B2' notitle, [0.12642:0.25] exp(8.8908201 - 74.353281*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.12642:0.25] exp(18.572743 - 130*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle, [0.0330579:0.12642] exp(0.22557553 - 12.442946*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.0330579:0.12642] exp(-0.17873101 - 7*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle
 set lmargin at screen 0
 set rmargin at screen 1
 set tmargin at screen 0.1302
