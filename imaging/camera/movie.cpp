@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <fstream>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 
 #include "core/error.hpp"
+#include "imaging/codecs/codecs.hpp"
 #include "imaging/stack/opencv_errors.hpp"
 
 namespace twincell::imaging {
@@ -32,32 +32,24 @@ void sign(const std::filesystem::path& film) {
 
 }  // namespace
 
-struct Movie::Writer {
-  cv::VideoWriter video;
-};
-
 Movie::Movie(const std::filesystem::path& file, cv::Size size, double rate)
-    : place_(file, Product::film()),
-      writer_(std::make_unique<Writer>()),
-      size_((size.width + 1) / 2 * 2, (size.height + 1) / 2 * 2) {
+    : place_(file, Product::film()), size_((size.width + 1) / 2 * 2, (size.height + 1) / 2 * 2) {
   quiet_opencv();
   require_range(Where{.file = {}, .key = "fps"}, rate, 0.01, 1000);
   const std::string kind = file.extension().string();
   if (kind != ".mp4" && kind != ".avi")
     throw ConfigError(Where{.file = {}, .key = "movie"},
                       fmt::format("is '{}'; films are written as .mp4 or .avi.", file.string()));
-  using cv::VideoWriter;
-  const std::vector<int> codecs = kind == ".avi" ? std::vector{VideoWriter::fourcc('M', 'J', 'P', 'G')}
-                                                 : std::vector{VideoWriter::fourcc('a', 'v', 'c', '1'),
-                                                               VideoWriter::fourcc('m', 'p', '4', 'v')};
-  for (const int codec : codecs)
-    if (writer_->video.open(place_.part().string(), codec, rate, size_, true)) return;
+  const std::vector<std::string> kinds =
+      kind == ".avi" ? std::vector<std::string>{"MJPG"} : std::vector<std::string>{"avc1", "mp4v"};
+  for (const std::string& codec : kinds) {
+    writer_ = codecs().create_film(place_.part().string(), codec, rate, size_);
+    if (writer_) return;
+  }
   throw RunError(file.string() + ": this build of OpenCV cannot write films of this format.");
 }
 
-Movie::~Movie() {
-  writer_->video.release();
-}
+Movie::~Movie() = default;
 
 void Movie::add(const cv::Mat& frame, int bits) {
   cv::Mat shown = frame, colour;
@@ -69,19 +61,19 @@ void Movie::add(const cv::Mat& frame, int bits) {
     cv::cvtColor(shown, colour, cv::COLOR_GRAY2BGR);
   else
     colour = shown;
-  writer_->video.write(colour);
+  writer_->write(colour);
   ++frames_;
 }
 
 void Movie::commit() {
-  writer_->video.release();
+  writer_.reset();
   std::error_code error;
   if (std::filesystem::file_size(place_.part(), error) == 0 || error)
     throw RunError(place_.final().string() + ": cannot be written.");
   // OpenCV does not report a full disk, so the frames that can be read back are counted.
-  cv::VideoCapture back(place_.part().string());
+  const auto back = codecs().open_film(place_.part().string(), false);
   std::size_t kept = 0;
-  while (kept <= frames_ && back.grab()) ++kept;
+  while (back && kept <= frames_ && back->skip()) ++kept;
   if (kept != frames_)
     throw RunError(fmt::format("{}: {} of {} frames could be written; is the disk full?",
                                place_.final().string(), kept, frames_));

@@ -10,6 +10,8 @@
 
 namespace twincell::imaging {
 
+class FilmWriter;
+
 /// Writes .mp4 (H.264, or MPEG-4 if this build of OpenCV has no H.264) or .avi (Motion JPEG), 8-bit grey or
 /// BGR. An odd width or height is made even by repeating the last column or row. The file appears at
 /// commit().
@@ -27,9 +29,8 @@ class Movie {
   void commit();
 
  private:
-  struct Writer;
   AtomicPath place_;
-  std::unique_ptr<Writer> writer_;
+  std::unique_ptr<FilmWriter> writer_;
   cv::Size size_;
   std::size_t frames_ = 0;
 };

@@ -14,6 +14,7 @@
 #include "imaging/camera/movie.hpp"
 #include "imaging/camera/random.hpp"
 #include "imaging/camera/synthetic_camera.hpp"
+#include "imaging/codecs/codecs.hpp"
 
 namespace twincell::imaging {
 
@@ -142,8 +143,11 @@ class Filming {
         const auto file = folder / fmt::format("frame_{:05}.png", number);
         // Noise does not compress: the lowest compression level gives files a tenth larger than the highest
         // and is five times faster.
-        if (!cv::imwrite(file.string(), picture, {cv::IMWRITE_PNG_COMPRESSION, 1}))
-          throw RunError(file.string() + ": cannot be written.");
+        const auto bytes = codecs().encode(".png", picture, {cv::IMWRITE_PNG_COMPRESSION, 1});
+        std::ofstream out(file, std::ios::binary);
+        out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        out.close();
+        if (bytes.empty() || !out) throw RunError(file.string() + ": cannot be written.");
       }
       for (const TrueBead& b : beads)
         fmt::format_to(std::back_inserter(take.truth), "{},{},{:.5f},{:.5f},{:.5f},{},{},{},{:.3f}\n", number,

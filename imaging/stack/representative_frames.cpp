@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.hpp"
+#include "imaging/codecs/codecs.hpp"
 #include "imaging/geometry/lens.hpp"
 
 namespace twincell::imaging {
@@ -42,9 +43,8 @@ std::vector<std::string> picture_frames(FrameSource& stack, const std::vector<st
     if (rotation_deg != 0 || distortion != 0) byte = without_lens(byte, rotation_deg, distortion);
     const int by = (std::max(byte.cols, byte.rows) + longest - 1) / longest;
     if (by > 1) cv::resize(byte, byte, cv::Size(byte.cols / by, byte.rows / by), 0, 0, cv::INTER_AREA);
-    std::vector<unsigned char> bytes;
-    if (!cv::imencode(".png", byte, bytes, {cv::IMWRITE_PNG_COMPRESSION, 9}))
-      throw RunError(stack.current() + ": the picture cannot be encoded as PNG.");
+    const std::vector<unsigned char> bytes = codecs().encode(".png", byte, {cv::IMWRITE_PNG_COMPRESSION, 9});
+    if (bytes.empty()) throw RunError(stack.current() + ": the picture cannot be encoded as PNG.");
     for (; next < numbers.size() && numbers[next] == number; ++next)
       pictures[next].assign(bytes.begin(), bytes.end());
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "imaging/codecs/codecs.hpp"
 
 namespace twincell::imaging {
 
@@ -24,9 +25,8 @@ EncodedFrame encoded_frame(const cv::Mat& grey) {
   const bool exact = byte.total() <= kExact;
   const std::vector<int> settings = exact ? std::vector<int>{cv::IMWRITE_PNG_COMPRESSION, kCompression}
                                           : std::vector<int>{cv::IMWRITE_JPEG_QUALITY, kQuality};
-  std::vector<unsigned char> bytes;
-  if (!cv::imencode(exact ? ".png" : ".jpg", byte, bytes, settings))
-    throw RunError("A frame cannot be encoded as a picture.");
+  const std::vector<unsigned char> bytes = codecs().encode(exact ? ".png" : ".jpg", byte, settings);
+  if (bytes.empty()) throw RunError("A frame cannot be encoded as a picture.");
   return {exact ? "image/png" : "image/jpeg", {bytes.begin(), bytes.end()}};
 }
 

@@ -9,6 +9,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "imaging/codecs/codecs.hpp"
 
 namespace twincell::imaging {
 
@@ -58,10 +59,10 @@ std::string software_chunk() {
 }  // namespace
 
 void write_png(const std::filesystem::path& png, const cv::Mat& picture) {
-  std::vector<unsigned char> bytes;
   constexpr int kCompression = 9;  // the default of OpenCV is the fastest, with twice the bytes
-  if (!cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, kCompression}))
-    throw RunError(png.string() + ": the picture cannot be encoded as PNG.");
+  const std::vector<unsigned char> bytes =
+      codecs().encode(".png", picture, {cv::IMWRITE_PNG_COMPRESSION, kCompression});
+  if (bytes.empty()) throw RunError(png.string() + ": the picture cannot be encoded as PNG.");
   AtomicPath path(png, Product::picture());
   std::ofstream out(path.part(), std::ios::binary);
   const auto* png_bytes = reinterpret_cast<const char*>(bytes.data());

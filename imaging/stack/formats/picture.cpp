@@ -8,9 +8,9 @@
 #include <array>
 #include <bit>
 #include <cctype>
-#include <opencv2/imgcodecs.hpp>
 #include <utility>
 
+#include "imaging/codecs/codecs.hpp"
 #include "imaging/stack/formats/byte_file.hpp"
 #include "imaging/stack/formats/raw_pixels.hpp"
 #include "imaging/stack/formats/reader.hpp"
@@ -125,7 +125,7 @@ class Picture final : public FrameSource {
     if (kind == "PGM") info_.bits = std::bit_width(check_pgm(file, bytes));
     cv::Mat picture;
     try {
-      picture = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+      picture = codecs().decode(bytes);
     } catch (const cv::Exception&) {  // reported below
     }
     if (picture.empty()) in.refuse(fmt::format("cannot be decoded as a {} picture.", kind));

@@ -9,6 +9,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "core/cancellation.hpp"
+#include "imaging/codecs/codecs.hpp"
 #include "imaging/stack/formats/byte_file.hpp"
 #include "imaging/stack/formats/ffmpeg_pipe.hpp"
 #include "imaging/stack/formats/raw_pixels.hpp"
@@ -32,28 +33,28 @@ class Video final : public FrameSource {
                fmt::format("protocol_whitelist;file,pipe|format_whitelist;{}", kContainers).c_str(), 1);
     (void)limited;
     try {
-      capture_.open(ffmpeg_name(file), cv::CAP_FFMPEG);
+      film_ = codecs().open_film(ffmpeg_name(file), true);
     } catch (const cv::Exception&) {  // is_open() is then false
     }
-    if (!capture_.isOpened()) return;
+    if (!film_) return;
     info_.format = "video read by OpenCV";
-    info_.width = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_WIDTH));
-    info_.height = static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_HEIGHT));
+    info_.width = static_cast<int>(film_->property(cv::CAP_PROP_FRAME_WIDTH));
+    info_.height = static_cast<int>(film_->property(cv::CAP_PROP_FRAME_HEIGHT));
     info_.bits = 8;
-    if (const double rate = capture_.get(cv::CAP_PROP_FPS); rate > 0 && rate < 1e9)
+    if (const double rate = film_->property(cv::CAP_PROP_FPS); rate > 0 && rate < 1e9)
       info_.frame_rate_hz = rate;
     info_.playback = true;
-    stated_ = static_cast<std::size_t>(std::max(0.0, capture_.get(cv::CAP_PROP_FRAME_COUNT)));
+    stated_ = static_cast<std::size_t>(std::max(0.0, film_->property(cv::CAP_PROP_FRAME_COUNT)));
     info_.notes.push_back(fmt::format(
         "a video is read with 8 bits whatever its bit depth, and its grey values are not those the camera "
         "measured{}",
         ffmpeg_is_installed() ? "." : "; with ffmpeg installed, grey and deeper videos keep their values."));
   }
-  [[nodiscard]] bool is_open() const { return capture_.isOpened(); }
+  [[nodiscard]] bool is_open() const { return film_ != nullptr; }
 
   bool next(cv::Mat& frame) override {
     cv::Mat picture;
-    if (!capture_.read(picture) || picture.empty()) {
+    if (!film_->read(picture) || picture.empty()) {
       if (read_ == 0) refuse(file_, "holds no frame that can be decoded.");
       // The stated number may be an estimate, but a deficit of more than 5 % means damage.
       if (static_cast<double>(read_) < 0.95 * static_cast<double>(stated_) - 2)
@@ -82,13 +83,13 @@ class Video final : public FrameSource {
   /// Number of frames that can be read, found by reading them.
   [[nodiscard]] std::size_t grabbed() const {
     std::size_t n = 0;
-    cv::VideoCapture again(ffmpeg_name(file_), cv::CAP_FFMPEG);
-    for (; again.isOpened() && again.grab(); ++n) throw_if_cancelled();
+    const auto again = codecs().open_film(ffmpeg_name(file_), true);
+    for (; again && again->skip(); ++n) throw_if_cancelled();
     return n;
   }
 
   fs::path file_;
-  cv::VideoCapture capture_;
+  std::unique_ptr<FilmReader> film_;
   std::size_t stated_ = 0, read_ = 0;
   mutable std::optional<std::size_t> counted_;
   SizeGuard guard_;
