@@ -71,7 +71,7 @@ calibration::Sought sought_of(const std::string& said) {
 struct MeasuredOnset {
   analysis::BedPhase phase = analysis::BedPhase::bouncing;
   double gamma = 0, error = 0;
-  [[nodiscard]] std::string name() const { return "onset of " + analysis::phase_name(phase); }
+  [[nodiscard]] std::string name() const { return "onset of " + analysis::onset_name(phase); }
   /// The observable whose crossing of its threshold defines the onset.
   [[nodiscard]] std::string observable() const {
     return phase == analysis::BedPhase::bouncing ? "s_b" : "s_c";

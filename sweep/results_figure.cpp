@@ -11,6 +11,7 @@
 #include <optional>
 #include <set>
 
+#include "analysis/motion/phase_thresholds.hpp"
 #include "analysis/report/colours.hpp"
 #include "analysis/report/figure_style.hpp"
 #include "analysis/report/gnuplot_text.hpp"
@@ -175,6 +176,14 @@ struct Rows {
   std::size_t points = 0;
 };
 
+/// "drive.gamma at the onset of convection".
+std::string onset_label(const json& onset) {
+  const std::string verdict = onset.value("verdict", "");
+  const analysis::BedPhase phase = analysis::phase_named(verdict);
+  return fmt::format("{} at the onset of {}", onset.value("key", ""),
+                     phase == analysis::BedPhase::undetermined ? verdict : analysis::onset_name(phase));
+}
+
 }  // namespace
 
 analysis::Figure results_figure(const std::string& collected, const FigureOptions& options) {
@@ -202,9 +211,7 @@ analysis::Figure results_figure(const std::string& collected, const FigureOption
   std::stable_sort(values.begin(), values.end(), [&](const Value& a, const Value& b) {
     return a.axes.value(x, 0.0) < b.axes.value(x, 0.0);
   });
-  const std::string y = onsets ? fmt::format("{} at the onset of {}", document["onsets"][0].value("key", ""),
-                                             document["onsets"][0].value("verdict", ""))
-                               : result;
+  const std::string y = onsets ? onset_label(document["onsets"][0]) : result;
   const auto key_label = [](const std::string& label, const std::string& key) {
     return with_unit(analysis::gnuplot_text(label), analysis::gnuplot_text(unit_of_key(key)));
   };

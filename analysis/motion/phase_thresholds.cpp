@@ -509,6 +509,10 @@ std::string phase_name(BedPhase phase) {
   return std::string(row_of(kBedPhases, phase).word);
 }
 
+std::string onset_name(BedPhase phase) {
+  return phase == BedPhase::convecting ? "convection" : phase_name(phase);
+}
+
 BedPhase phase_named(const std::string& name) {
   const auto row =
       std::find_if(kBedPhases.begin(), kBedPhases.end(), [&](const auto& r) { return r.word == name; });

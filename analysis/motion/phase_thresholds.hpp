@@ -28,6 +28,8 @@ inline constexpr std::array kBedPhases = {
                      "the bed leaves the plate and convects: s_b > sigma/30, s_c > sigma"}};
 /// The word of a phase.
 std::string phase_name(BedPhase phase);
+/// What begins with a phase, as in "onset of bouncing" and "onset of convection".
+std::string onset_name(BedPhase phase);
 /// Inverse of phase_name; undetermined for any other text.
 BedPhase phase_named(const std::string& name);
 

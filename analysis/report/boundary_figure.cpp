@@ -80,7 +80,7 @@ void add_onsets(Blocks& blocks, const Comparison& c, double aside) {
   };
   std::map<std::string, Group> groups;
   for (const PhaseBoundary& b : c.boundaries) {
-    Group& g = groups[fmt::format("{}: {}", phase_name(b.onset), boundary_of(b))];
+    Group& g = groups[fmt::format("{}: {}", onset_name(b.onset), boundary_of(b))];
     g.onset = b.onset;
     g.sweep = b.sweep;
     constexpr int kOpenCircle = 6, kCircle = 7, kSquare = 5;

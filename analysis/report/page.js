@@ -106,6 +106,7 @@
           hovertemplate: `sweep, ${plain(start)}: ${phase}<br>Nₗσ %{x:.3g}, Γ %{y:.4g}<extra></extra>`,
           marker: {size: 6, symbol: phaseSymbol[phase] + (phase === 'undetermined' ? '-open' : ''), color: phaseColour[phase], opacity: 0.55}});
       }
+    const onsetOf = {bouncing: 'bouncing', convecting: 'convection'};
     for (const kind of ['bouncing', 'convecting'])
       for (const key of new Set(data.boundaries.filter(b => b.onset === kind).map(b => b.of))) {
         const of = data.boundaries.filter(b => b.onset === kind && b.of === key && (b.gamma !== null || b.below !== null || b.above !== null));
@@ -113,9 +114,9 @@
         const side = of[0].side, colour = sideColour[side], open = side === 'experiment' ? '-open' : '';
         const shift = (of[0].sweep ? 0 : side === 'experiment' ? -1 : 1) * aside;
         const place = b => b.gamma !== null ? b.gamma : b.below !== null ? b.below : b.above;
-        traces.push({x: of.map(b => Math.max(x[0], b.n_l + shift)), y: of.map(place), mode: of.length > 1 ? 'lines+markers' : 'markers', name: `onset of ${kind}, ${plain(key)}`,
+        traces.push({x: of.map(b => Math.max(x[0], b.n_l + shift)), y: of.map(place), mode: of.length > 1 ? 'lines+markers' : 'markers', name: `onset of ${onsetOf[kind]}, ${plain(key)}`,
           text: of.map(b => b.gamma !== null ? `Γ = ${+b.gamma.toPrecision(3)} [${+b.low.toPrecision(3)}, ${+b.high.toPrecision(3)}]` : b.below !== null ? `Γ above ${b.below}` : `Γ below ${b.above}`),
-          hovertemplate: `onset of ${kind}, ${plain(key)}<br>%{text}<extra></extra>`,
+          hovertemplate: `onset of ${onsetOf[kind]}, ${plain(key)}<br>%{text}<extra></extra>`,
           error_y: {type: 'data', symmetric: false, array: of.map(b => b.gamma !== null ? b.high - b.gamma : 0), arrayminus: of.map(b => b.gamma !== null ? b.gamma - b.low : 0), width: 7, thickness: 1.6, color: colour},
           line: {color: colour, width: 1.4, dash: kind === 'bouncing' ? 'dot' : 'solid'},
           marker: {size: 11, symbol: of.map(b => b.gamma !== null ? (kind === 'bouncing' ? 'diamond' : 'star') + open : b.below !== null ? 'arrow-up' : 'arrow-down'),

@@ -81,7 +81,7 @@ std::string real_differences(const Comparison& c) {
 std::string conclusion_of_sweep(const Comparison& c) {
   std::string text = fmt::format("The diagram shows {} points of a sweep.", c.sweep.size());
   for (const PhaseBoundary& b : c.boundaries)
-    text += fmt::format(" Onset of {} ({}, N_l = {:.3g}): Gamma {}.", phase_name(b.onset), boundary_of(b),
+    text += fmt::format(" Onset of {} ({}, N_l = {:.3g}): Gamma {}.", onset_name(b.onset), boundary_of(b),
                         b.n_l, boundary_text(b));
   return text;
 }
@@ -313,7 +313,7 @@ std::string boundary_table(const std::vector<PhaseBoundary>& boundaries) {
   Table table("boundaries", {"onset of", "of", "N<sub>l</sub>σ", "Γ", "half width", "runs"});
   for (const PhaseBoundary& b : boundaries) {
     table.row();
-    table.cell(phase_name(b.onset));
+    table.cell(onset_name(b.onset));
     table.cell(html_text(boundary_of(b)));
     table.cell(b.n_l);
     if (b.half_width()) {
@@ -656,7 +656,7 @@ std::string phases_text(const Comparison& c) {
                         verdict_word(c.runs, match));
   }
   for (const PhaseBoundary& b : c.boundaries)
-    text += fmt::format("onset of {}, {}, N_l = {:.3g}: Gamma {}\n", phase_name(b.onset), boundary_of(b),
+    text += fmt::format("onset of {}, {}, N_l = {:.3g}: Gamma {}\n", onset_name(b.onset), boundary_of(b),
                         b.n_l, boundary_text(b));
   return text;
 }

@@ -63,7 +63,7 @@ std::vector<std::string> onset_sentences(const std::vector<PhaseBoundary>& bound
   std::vector<std::string> sentences;
   for (const Agreement& a : agreements)
     sentences.push_back(fmt::format(
-        "Onset of {}{}: {}", phase_name(a.onset),
+        "Onset of {}{}: {}", onset_name(a.onset),
         several ? fmt::format(" at N_l = {:.3g}", fmt::join(a.heights, " and ")) : std::string(), a.said));
   return sentences;
 }

@@ -34,14 +34,14 @@ TEST(OnsetAgreement, IntervalsWithACommonPointAreCompatible) {
 TEST(OnsetAgreement, TheSentenceStatesBothIntervals) {
   EXPECT_EQ(
       said({onset(Side::experiment, 1.6, 2.5), onset(Side::simulation, 2.6, {})}),
-      "Onset of convecting: Gamma 2.05 ± 0.45 in the experiment and above 2.6 in the simulation, different.");
+      "Onset of convection: Gamma 2.05 ± 0.45 in the experiment and above 2.6 in the simulation, different.");
 }
 
 TEST(OnsetAgreement, LimitsOnTheSameSideAgreeOnNothing) {
   PhaseBoundary twins = onset(Side::simulation, 1.6, {});
   twins.start = "trajectory";
   EXPECT_EQ(said({onset(Side::experiment, 1.6, {}), twins}),
-            "Onset of convecting: Gamma above 1.6 in the experiment and above 1.6 in the twins, not "
+            "Onset of convection: Gamma above 1.6 in the experiment and above 1.6 in the twins, not "
             "bracketed on either side.");
 }
 
@@ -58,7 +58,7 @@ TEST(OnsetAgreement, HeightsAreNamedIfThereAreSeveral) {
     return said(a);
   };
   EXPECT_EQ(joined(both(1.5, 6), both(1.5, 10)),
-            "Onset of convecting at N_l = 6 and 10: Gamma 2 ± 0.5 in the experiment and 2 ± 0.5 in the "
+            "Onset of convection at N_l = 6 and 10: Gamma 2 ± 0.5 in the experiment and 2 ± 0.5 in the "
             "simulation, compatible.");
   const std::string apart = joined(both(1.5, 6), both(1.7, 10));
   EXPECT_NE(apart.find("at N_l = 6: Gamma 2 ± 0.5 in the experiment"), std::string::npos) << apart;

@@ -35,7 +35,7 @@ TEST(ResultsFigure, OnsetsAreTheDefaultAndLimitsAreTriangles) {
     {"axes": {"beads.layers": 10}, "key": "drive.gamma", "verdict": "convecting", "value": null, "low": 2.9, "high": null}]})");
   EXPECT_EQ(f.data, "20 2.1 2 2.3\n\n\n10 2.9\n");
   EXPECT_NE(f.plot.find("with points pt 9"), std::string::npos);  // a triangle that points up
-  EXPECT_EQ(f.title, "drive.gamma at the onset of convecting against beads.layers");
+  EXPECT_EQ(f.title, "drive.gamma at the onset of convection against beads.layers");
 }
 
 TEST(ResultsFigure, KeepsTheRulesOfFigures) {
