@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -14,89 +15,83 @@ namespace {
 
 enum class Sign { any, not_negative, positive };
 
+/// A quantity of a table: its plain key, and the keys that state its unit.
+struct Quantity {
+  const char *plain, *reduced, *physical;
+  Unit unit;  ///< of `physical`
+  Sign sign;
+  bool has_dimension = true;  ///< the plain key needs a unit where the laboratory scale is stated
+  double per_plain = 1;       ///< 2 for a diameter, which is two radii
+};
+
+constexpr std::array kDrive = {
+    Quantity{"amplitude", "amplitude_sigma", "amplitude_mm", Unit::length_mm, Sign::not_negative},
+    Quantity{"frequency", "frequency_per_t0", "frequency_hz", Unit::rate_per_s, Sign::positive},
+    Quantity{"omega", "omega_per_t0", "omega_rad_s", Unit::rate_per_s, Sign::positive},
+    Quantity{"peak_velocity", "peak_velocity_v0", "peak_velocity_mm_s", Unit::velocity_mm_s,
+             Sign::not_negative},
+    Quantity{"gamma", "peak_acceleration_g", "peak_acceleration_m_s2", Unit::acceleration_m_s2,
+             Sign::not_negative, false}};
+constexpr std::array kRecord = {
+    Quantity{"cutoff", "cutoff_per_t0", "cutoff_hz", Unit::rate_per_s, Sign::positive}};
+constexpr std::array kHorizontal = {kDrive[0]};
+constexpr std::array kCell = {
+    Quantity{"width", "width_sigma", "width_mm", Unit::length_mm, Sign::positive},
+    Quantity{"height", "height_sigma", "height_mm", Unit::length_mm, Sign::positive},
+    Quantity{"depth", "depth_sigma", "depth_mm", Unit::length_mm, Sign::positive}};
+constexpr std::array kBead = {
+    Quantity{"radius", "radius_sigma", "radius_mm", Unit::length_mm, Sign::positive},
+    Quantity{"radius", "diameter_sigma", "diameter_mm", Unit::length_mm, Sign::positive, false, 2}};
+constexpr std::array kPlace = {Quantity{"x", "x_sigma", "x_mm", Unit::length_mm, Sign::any},
+                               Quantity{"y", "y_sigma", "y_mm", Unit::length_mm, Sign::any},
+                               Quantity{"z", "z_sigma", "z_mm", Unit::length_mm, Sign::any}};
+
+/// The tables of a configuration that have such quantities.
+struct Table {
+  const char* section;
+  std::span<const Quantity> quantities;
+};
+constexpr std::array kTables = {Table{"drive", kDrive},         Table{"drive", kRecord},
+                                Table{"drive.ramp", kDrive},    Table{"drive.horizontal", kHorizontal},
+                                Table{"cell", kCell},           Table{"beads", kBead},
+                                Table{"beads.intruder", kBead}, Table{"beads.intruder", kPlace}};
+
 /// A key with a unit, and the plain reduced key that it sets.
 struct Spelling {
   const char *section, *plain, *written;
   Unit unit;
   Sign sign;
-  double per_plain = 1;  ///< 2 for a diameter, which is two radii
+  double per_plain;
 };
 
-constexpr const char *kIntruder = "beads.intruder", *kRamp = "drive.ramp", *kHorizontal = "drive.horizontal";
+/// All keys with a unit. The scale comes first, because the other keys are converted with it.
+const std::vector<Spelling>& spellings() {
+  static const std::vector<Spelling> all = [] {
+    std::vector<Spelling> list = {{"scale", "sigma_m", "sigma_mm", Unit::per_mille, Sign::positive, 1}};
+    for (const Table& table : kTables)
+      for (const Quantity& q : table.quantities) {
+        list.push_back({table.section, q.plain, q.reduced, Unit::one, q.sign, q.per_plain});
+        list.push_back({table.section, q.plain, q.physical, q.unit, q.sign, q.per_plain});
+      }
+    return list;
+  }();
+  return all;
+}
 
-constexpr std::array kSpellings = {
-    // The scale comes first, because the other keys are converted with it.
-    Spelling{"scale", "sigma_m", "sigma_mm", Unit::per_mille, Sign::positive},
-    Spelling{"drive", "amplitude", "amplitude_sigma", Unit::one, Sign::not_negative},
-    Spelling{"drive", "amplitude", "amplitude_mm", Unit::length_mm, Sign::not_negative},
-    Spelling{"drive", "frequency", "frequency_per_t0", Unit::one, Sign::positive},
-    Spelling{"drive", "frequency", "frequency_hz", Unit::rate_per_s, Sign::positive},
-    Spelling{"drive", "cutoff", "cutoff_per_t0", Unit::one, Sign::positive},
-    Spelling{"drive", "cutoff", "cutoff_hz", Unit::rate_per_s, Sign::positive},
-    Spelling{"drive", "omega", "omega_per_t0", Unit::one, Sign::positive},
-    Spelling{"drive", "omega", "omega_rad_s", Unit::rate_per_s, Sign::positive},
-    Spelling{"drive", "peak_velocity", "peak_velocity_v0", Unit::one, Sign::not_negative},
-    Spelling{"drive", "peak_velocity", "peak_velocity_mm_s", Unit::velocity_mm_s, Sign::not_negative},
-    Spelling{"drive", "gamma", "peak_acceleration_g", Unit::one, Sign::not_negative},
-    Spelling{"drive", "gamma", "peak_acceleration_m_s2", Unit::acceleration_m_s2, Sign::not_negative},
-    Spelling{kRamp, "amplitude", "amplitude_sigma", Unit::one, Sign::not_negative},
-    Spelling{kRamp, "amplitude", "amplitude_mm", Unit::length_mm, Sign::not_negative},
-    Spelling{kRamp, "frequency", "frequency_per_t0", Unit::one, Sign::positive},
-    Spelling{kRamp, "frequency", "frequency_hz", Unit::rate_per_s, Sign::positive},
-    Spelling{kRamp, "omega", "omega_per_t0", Unit::one, Sign::positive},
-    Spelling{kRamp, "omega", "omega_rad_s", Unit::rate_per_s, Sign::positive},
-    Spelling{kRamp, "peak_velocity", "peak_velocity_v0", Unit::one, Sign::not_negative},
-    Spelling{kRamp, "peak_velocity", "peak_velocity_mm_s", Unit::velocity_mm_s, Sign::not_negative},
-    Spelling{kRamp, "gamma", "peak_acceleration_g", Unit::one, Sign::not_negative},
-    Spelling{kRamp, "gamma", "peak_acceleration_m_s2", Unit::acceleration_m_s2, Sign::not_negative},
-    Spelling{kHorizontal, "amplitude", "amplitude_sigma", Unit::one, Sign::not_negative},
-    Spelling{kHorizontal, "amplitude", "amplitude_mm", Unit::length_mm, Sign::not_negative},
-    Spelling{"cell", "width", "width_sigma", Unit::one, Sign::positive},
-    Spelling{"cell", "width", "width_mm", Unit::length_mm, Sign::positive},
-    Spelling{"cell", "height", "height_sigma", Unit::one, Sign::positive},
-    Spelling{"cell", "height", "height_mm", Unit::length_mm, Sign::positive},
-    Spelling{"cell", "depth", "depth_sigma", Unit::one, Sign::positive},
-    Spelling{"cell", "depth", "depth_mm", Unit::length_mm, Sign::positive},
-    Spelling{"beads", "radius", "radius_sigma", Unit::one, Sign::positive},
-    Spelling{"beads", "radius", "radius_mm", Unit::length_mm, Sign::positive},
-    Spelling{"beads", "radius", "diameter_sigma", Unit::one, Sign::positive, 2},
-    Spelling{"beads", "radius", "diameter_mm", Unit::length_mm, Sign::positive, 2},
-    Spelling{kIntruder, "radius", "radius_sigma", Unit::one, Sign::positive},
-    Spelling{kIntruder, "radius", "radius_mm", Unit::length_mm, Sign::positive},
-    Spelling{kIntruder, "radius", "diameter_sigma", Unit::one, Sign::positive, 2},
-    Spelling{kIntruder, "radius", "diameter_mm", Unit::length_mm, Sign::positive, 2},
-    Spelling{kIntruder, "x", "x_sigma", Unit::one, Sign::any},
-    Spelling{kIntruder, "x", "x_mm", Unit::length_mm, Sign::any},
-    Spelling{kIntruder, "y", "y_sigma", Unit::one, Sign::any},
-    Spelling{kIntruder, "y", "y_mm", Unit::length_mm, Sign::any},
-    Spelling{kIntruder, "z", "z_sigma", Unit::one, Sign::any},
-    Spelling{kIntruder, "z", "z_mm", Unit::length_mm, Sign::any},
+/// A plain key that needs a unit where the laboratory scale is stated.
+struct BareKey {
+  const char* section;
+  const Quantity* quantity;
 };
 
-/// Keys with a dimension, with their reduced and their laboratory spelling.
-struct Dimensional {
-  const char *section, *plain, *reduced, *physical;
-};
-constexpr std::array kDimensional = {
-    Dimensional{"drive", "amplitude", "amplitude_sigma", "amplitude_mm"},
-    Dimensional{"drive", "frequency", "frequency_per_t0", "frequency_hz"},
-    Dimensional{"drive", "cutoff", "cutoff_per_t0", "cutoff_hz"},
-    Dimensional{"drive", "omega", "omega_per_t0", "omega_rad_s"},
-    Dimensional{"drive", "peak_velocity", "peak_velocity_v0", "peak_velocity_mm_s"},
-    Dimensional{kRamp, "amplitude", "amplitude_sigma", "amplitude_mm"},
-    Dimensional{kRamp, "frequency", "frequency_per_t0", "frequency_hz"},
-    Dimensional{kRamp, "omega", "omega_per_t0", "omega_rad_s"},
-    Dimensional{kRamp, "peak_velocity", "peak_velocity_v0", "peak_velocity_mm_s"},
-    Dimensional{kHorizontal, "amplitude", "amplitude_sigma", "amplitude_mm"},
-    Dimensional{"cell", "width", "width_sigma", "width_mm"},
-    Dimensional{"cell", "height", "height_sigma", "height_mm"},
-    Dimensional{"cell", "depth", "depth_sigma", "depth_mm"},
-    Dimensional{"beads", "radius", "radius_sigma", "radius_mm"},
-    Dimensional{kIntruder, "radius", "radius_sigma", "radius_mm"},
-    Dimensional{kIntruder, "x", "x_sigma", "x_mm"},
-    Dimensional{kIntruder, "y", "y_sigma", "y_mm"},
-    Dimensional{kIntruder, "z", "z_sigma", "z_mm"},
-};
+/// All such keys.
+std::vector<BareKey> bare_keys() {
+  std::vector<BareKey> all;
+  for (const Table& table : kTables)
+    for (const Quantity& q : table.quantities)
+      if (q.has_dimension) all.push_back({table.section, &q});
+  return all;
+}
 
 std::string path_of(const char* section, const char* key) {
   return std::string(section) + "." + key;
@@ -126,10 +121,11 @@ void refuse_bare_numbers(const Config& config) {
   if (!scale) return;
   for (const char* sigma : {"sigma_mm", "sigma_m"}) {
     if (!scale->has(sigma)) continue;
-    for (const Dimensional& d : kDimensional)
-      if (const auto table = table_at(config, d.section); table && table->has(d.plain))
-        refuse_bare(table->where(d.plain), table->number(d.plain).value_or(0), std::string("scale.") + sigma,
-                    path_of(d.section, d.reduced), path_of(d.section, d.physical));
+    for (const auto& [section, q] : bare_keys())
+      if (const auto table = table_at(config, section); table && table->has(q->plain))
+        refuse_bare(table->where(q->plain), table->number(q->plain).value_or(0),
+                    std::string("scale.") + sigma, path_of(section, q->reduced),
+                    path_of(section, q->physical));
   }
 }
 
@@ -174,7 +170,7 @@ void refuse_bare(const Where& where, double value, const std::string& scale, con
 void reduce_units(Config& config) {
   refuse_bare_numbers(config);
   Scale scale;
-  for (const Spelling& s : kSpellings) {
+  for (const Spelling& s : spellings()) {
     const auto table = table_at(config, s.section);
     if (!table) continue;
     const auto of_scale = table_at(config, "scale");
@@ -205,12 +201,12 @@ void displace_spellings(Config& config, const std::string& assignment) {
       {"drive.ramp.amplitude", "drive.ramp.gamma", "drive.ramp.k_m", "drive.ramp.peak_velocity"}};
   const std::string path = assignment.substr(0, assignment.find('='));
   std::string plain = path;
-  for (const Spelling& s : kSpellings)
+  for (const Spelling& s : spellings())
     if (path == path_of(s.section, s.written)) plain = path_of(s.section, s.plain);
   std::vector<std::string> said = {plain};
   for (const auto& group : groups)
     if (std::find(group.begin(), group.end(), plain) != group.end()) said = group;
-  for (const Spelling& s : kSpellings) {
+  for (const Spelling& s : spellings()) {
     if (std::find(said.begin(), said.end(), path_of(s.section, s.plain)) == said.end()) continue;
     config.erase(path_of(s.section, s.written));
     config.erase(path_of(s.section, s.plain));
@@ -222,16 +218,17 @@ void displace_spellings(Config& config, const std::string& assignment) {
 std::string resolved_text(Config& config) {
   const auto scale = table_at(config, "scale");
   if (!scale || !scale->has("sigma_m")) return config.text();
-  std::vector<const Dimensional*> renamed;
-  for (const Dimensional& d : kDimensional)
-    if (const auto table = table_at(config, d.section); table && table->has(d.plain)) {
-      config.restate(path_of(d.section, d.plain), path_of(d.section, d.reduced), *table->number(d.plain));
-      renamed.push_back(&d);
+  std::vector<BareKey> renamed;
+  for (const BareKey& key : bare_keys())
+    if (const auto table = table_at(config, key.section); table && table->has(key.quantity->plain)) {
+      config.restate(path_of(key.section, key.quantity->plain), path_of(key.section, key.quantity->reduced),
+                     *table->number(key.quantity->plain));
+      renamed.push_back(key);
     }
   std::string text = config.text();
-  for (const Dimensional* d : renamed)
-    config.restate(path_of(d->section, d->reduced), path_of(d->section, d->plain),
-                   *table_at(config, d->section)->number(d->reduced));
+  for (const auto& [section, q] : renamed)
+    config.restate(path_of(section, q->reduced), path_of(section, q->plain),
+                   *table_at(config, section)->number(q->reduced));
   return text;
 }
 
