@@ -62,27 +62,100 @@ class Levels {
   double low_ = HUGE_VAL, high_ = -HUGE_VAL;
 };
 
-void check(const TrajectorySource& source, const imaging::DrawJob& job, std::size_t frames) {
-  const auto refuse = [](const char* option, const char* why) {
-    throw ConfigError({.file = {}, .key = option}, why);
-  };
-  if (job.vectors) refuse("--vectors", "applies to a picture or a film; the output is a page.");
-  if (job.contacts) refuse("--contacts", "applies to a picture or a film; the output is a page.");
-  if (job.pixels_per_sigma > 0)
-    refuse("--pixels-per-sigma", "applies to a picture or a film; a page is as large as its window.");
-  imaging::check_colours(job.colours);
-  const double per_bead = (source.info().box.dimension == 3 ? 6 : 4) + (job.colours.of ? 2 : 0);
-  const double size =
-      4.0 / 3 * per_bead * static_cast<double>(source.info().n_beads) * static_cast<double>(frames);
-  if (size > kLargestPage)
-    throw ConfigError(
-        {.file = source.name(), .key = "--frames"},
-        fmt::format(
-            "{} of {} make a page of {:.3g} MB, the bound is {:g} MB; choose fewer by a STEP of at least "
-            "{}, as in A:B:STEP.",
-            counted(frames, "frame"), counted(source.info().n_beads, "bead"), size / 1e6, kLargestPage / 1e6,
-            static_cast<std::int64_t>(std::ceil(size / kLargestPage)) * job.frames.step));
+/// Whole numbers of 32 bits, the lowest byte first.
+std::string bytes_of(const std::vector<std::uint32_t>& numbers) {
+  std::string all;
+  all.reserve(4 * numbers.size());
+  for (const std::uint32_t n : numbers)
+    for (unsigned shift = 0; shift < 32; shift += 8) all += static_cast<char>(n >> shift & 0xFFU);
+  return all;
 }
+
+/// Components of vectors, those along y only in 3D.
+class VectorLevels {
+ public:
+  explicit VectorLevels(bool solid) : solid_(solid) {}
+  void add(const Vec3& v) {
+    x_.add(v.x());
+    if (solid_) y_.add(v.y());
+    z_.add(v.z());
+  }
+  [[nodiscard]] json document() const {
+    json all = {{"x", x_.document()}, {"z", z_.document()}};
+    if (solid_) all["y"] = y_.document();
+    return all;
+  }
+
+ private:
+  bool solid_;
+  Levels x_, y_, z_;
+};
+
+/// Bytes of base64 in the page for each byte of data.
+constexpr double kBase64 = 4.0 / 3;
+
+[[noreturn]] void refuse_size(const TrajectorySource& source, const std::string& what, double size,
+                              std::int64_t step) {
+  throw ConfigError(
+      {.file = source.name(), .key = "--frames"},
+      fmt::format(
+          "{} make a page of {:.3g} MB, the bound is {:g} MB; choose fewer frames by a STEP of at least "
+          "{}, as in A:B:STEP.",
+          what, size / 1e6, kLargestPage / 1e6,
+          static_cast<std::int64_t>(std::ceil(size / kLargestPage)) * step));
+}
+
+/// Bytes of the page for each bead in each frame.
+double bytes_per_bead(const TrajectorySource& source, const imaging::DrawJob& job) {
+  const int components = source.info().box.dimension == 3 ? 3 : 2;
+  return kBase64 * 2 * (components * (job.vectors ? 2 : 1) + (job.colours.of ? 1 : 0));
+}
+
+void check(const TrajectorySource& source, const imaging::DrawJob& job, std::size_t frames) {
+  if (job.pixels_per_sigma > 0)
+    throw ConfigError({.file = {}, .key = "--pixels-per-sigma"},
+                      "applies to a picture or a film; a page is as large as its window.");
+  imaging::require_drawable(source, job);
+  const std::size_t beads = source.info().n_beads;
+  const double size = bytes_per_bead(source, job) * static_cast<double>(beads) * static_cast<double>(frames);
+  if (size > kLargestPage)
+    refuse_size(source, fmt::format("{} of {}", counted(frames, "frame"), counted(beads, "bead")), size,
+                job.frames.step);
+}
+
+/// The contacts of all frames: the bead from whose centre a line begins, the line to the other centre or to
+/// the wall, and the normal force.
+class ContactLevels {
+ public:
+  explicit ContactLevels(const TrajectoryInfo& info) : info_(info), lines_(info.box.dimension == 3) {}
+  void add(const Frame& frame) {
+    for (const ContactForce& c : frame.contact_forces) {
+      const double other = c.j >= 0 ? radius(c.j) : 0;
+      bead_.push_back(static_cast<std::uint32_t>(c.i));
+      lines_.add(-c.normal * (radius(c.i) + other - c.overlap));
+      force_.add(std::abs(c.normal_force));
+    }
+    first_.push_back(bead_.size());
+  }
+  [[nodiscard]] std::size_t size() const { return bead_.size(); }
+  [[nodiscard]] json document() const {
+    return {{"first", first_},
+            {"bead", analysis::data_uri("application/octet-stream", bytes_of(bead_))},
+            {"line", lines_.document()},
+            {"force", force_.document()},
+            {"widest", imaging::kWidestLine}};
+  }
+
+ private:
+  [[nodiscard]] double radius(std::int32_t bead) const {
+    return info_.radius.empty() ? 0.5 : info_.radius[static_cast<std::size_t>(bead)];
+  }
+  const TrajectoryInfo& info_;
+  std::vector<std::size_t> first_ = {0};  // of each frame, and behind the last
+  std::vector<std::uint32_t> bead_;
+  VectorLevels lines_;
+  Levels force_;
+};
 
 const char* boundary_word(Boundary b) {
   return b == Boundary::periodic ? "periodic" : b == Boundary::wall ? "wall" : "open";
@@ -118,6 +191,8 @@ constexpr std::string_view kBody = R"(
 <label>speed <select id="speed"></select></label>
 <label>zoom <select id="zoom"><option value="1">fit</option><option value="2">2 ×</option><option value="4">4 ×</option><option value="8">8 ×</option></select></label>
 <label>tracks <select id="tracks"></select></label>
+<label id="with-vectors" hidden><input type="checkbox" id="vectors" checked> velocities</label>
+<label id="with-contacts" hidden><input type="checkbox" id="contacts" checked> contacts</label>
 </div>
 <div id="window" tabindex="0"><canvas id="cell" role="img" aria-label="beads and cell"></canvas></div>
 <p id="key"></p>
@@ -134,7 +209,11 @@ DrawnPage page_of(const TrajectorySource& source, const imaging::DrawJob& job, c
   const std::vector<std::size_t> indices = imaging::indices_of(source, job.frames);
   check(source, job, indices.size());
   const bool solid = info.box.dimension == 3;
-  Levels x, y, z, numbers;
+  const Vec3 nowhere = Vec3::Constant(std::nan(""));
+  VectorLevels positions(solid), velocities(solid);
+  Levels numbers;
+  ContactLevels contacts(info);
+  double fastest = 0;
   json titles = json::array(), cells = json::array(), numbers_of_frames = json::array();
   Frame frame;
   for (std::size_t k = 0; k < indices.size(); ++k) {
@@ -147,14 +226,25 @@ DrawnPage page_of(const TrajectorySource& source, const imaging::DrawJob& job, c
         job.colours.of ? job.colours.of(indices[k], frame) : std::vector<double>();
     for (std::size_t i = 0; i < info.n_beads; ++i) {
       const bool seen = frame.present(i) && frame.position[i].allFinite();
-      const Vec3 r = seen ? info.box.wrap(frame.position[i]) : Vec3(Vec3::Constant(std::nan("")));
-      x.add(r.x());
-      if (solid) y.add(r.y());
-      z.add(r.z());
+      positions.add(seen ? info.box.wrap(frame.position[i]) : nowhere);
       if (job.colours.of) numbers.add(seen ? values[i] : std::nan(""));
+      if (!job.vectors) continue;
+      const bool moves = seen && frame.velocity[i].allFinite();
+      velocities.add(moves ? frame.velocity[i] : nowhere);
+      if (moves) fastest = std::max(fastest, frame.velocity[i].norm());
     }
+    if (job.contacts) contacts.add(frame);
     progress.update(static_cast<std::int64_t>(k) + 1, static_cast<std::int64_t>(indices.size()));
   }
+  // The number of contacts is known only now.
+  const double of_contact = kBase64 * (4 + 2 * ((solid ? 3 : 2) + 1));
+  const double size = bytes_per_bead(source, job) * static_cast<double>(info.n_beads * indices.size()) +
+                      of_contact * static_cast<double>(contacts.size());
+  if (size > kLargestPage)
+    refuse_size(source,
+                fmt::format("{} of {} with {}", counted(indices.size(), "frame"),
+                            counted(info.n_beads, "bead"), counted(contacts.size(), "contact")),
+                size, job.frames.step);
   DrawnPage page{.html = {}, .frames = indices.size(), .range = {numbers.low(), numbers.high()}};
   if (job.colours.range) page.range = *job.colours.range;
   json data = {{"box", box_json(info.box)},
@@ -163,12 +253,14 @@ DrawnPage page_of(const TrajectorySource& source, const imaging::DrawJob& job, c
                {"numbers", numbers_of_frames},
                {"titles", titles},
                {"cells", cells},
-               {"x", x.document()},
-               {"z", z.document()},
+               {"position", positions.document()},
                {"map", map_json()},
                {"speed", job.frames_per_second},
                {"tracks", job.tracks}};
-  if (solid) data["y"] = y.document();
+  if (job.vectors)
+    data["velocity"] = {
+        {"value", velocities.document()}, {"fastest", fastest}, {"longest", imaging::kLongestArrow}};
+  if (job.contacts) data["contacts"] = contacts.document();
   if (info.scale.sigma_m) data["sigma_mm"] = *info.scale.sigma_m * 1000;
   if (job.colours.of) {
     data["colour"] = numbers.document();

@@ -16,8 +16,8 @@ inline Product draw_page() {
   return Product::text("a page of draw", "<!DOCTYPE html>\n<!-- twincell draw -->\n");
 }
 
-/// Largest size of the positions and colours in a page, bytes of its text. A bead takes 16/3 bytes of it in a
-/// frame in 2D, 8 in 3D, and 8/3 more with a number.
+/// Largest size of the numbers in a page, bytes of its text. A bead takes 16/3 bytes of it in a frame in 2D,
+/// 8 in 3D, as many more with its velocity, and 8/3 more with a number; a contact takes 40/3 in 2D, 16 in 3D.
 inline constexpr double kLargestPage = 32e6;
 
 /// A page and what it shows.
@@ -28,10 +28,10 @@ struct DrawnPage {
 };
 
 /// Makes the page of the chosen frames. Positions are rounded to 1/65534 of their range in the page, numbers
-/// likewise. Of the job, frames, colours, tracks and frames_per_second are used.
+/// likewise. Of the job, all but `output` and `pixels_per_sigma` is used.
 /// \param trajectory the file, whose name is the title
-/// \throws ConfigError for frames that the trajectory lacks, for a job that asks for vectors, contacts or a
-/// scale, or if the page would be larger than kLargestPage
+/// \throws ConfigError for frames or columns that the trajectory lacks, for a job that asks for a scale, or
+/// if the page would be larger than kLargestPage
 DrawnPage page_of(const TrajectorySource& source, const imaging::DrawJob& job, const std::string& trajectory,
                   Progress& progress);
 

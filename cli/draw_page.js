@@ -14,7 +14,16 @@
     const step = (part.high - part.low) / kLevels;
     return {levels, at: k => levels[k] === kAbsent ? NaN : part.low + step * levels[k], low: part.low, high: part.high};
   }
-  const x = numbersOf(data.x), z = numbersOf(data.z), y = solid ? numbersOf(data.y) : null;
+  const vectorsOf = part => ({x: numbersOf(part.x), y: solid ? numbersOf(part.y) : null, z: numbersOf(part.z)});
+  const vectorAt = (part, k) => [part.x.at(k), solid ? part.y.at(k) : 0, part.z.at(k)];
+  function wholesOf(uri) {
+    const text = atob(uri.slice(uri.indexOf(',') + 1)), numbers = new Uint32Array(text.length / 4);
+    for (let k = 0; k < numbers.length; ++k) for (let b = 0; b < 4; ++b) numbers[k] += text.charCodeAt(4 * k + b) * 256 ** b;
+    return numbers;
+  }
+  const positions = vectorsOf(data.position), x = positions.x, z = positions.z;
+  const velocity = data.velocity ? vectorsOf(data.velocity.value) : null;
+  const contacts = data.contacts ? {bead: wholesOf(data.contacts.bead), line: vectorsOf(data.contacts.line), force: numbersOf(data.contacts.force)} : null;
   const number = data.colour ? numbersOf(data.colour) : null, unit = data.colour ? data.colour.unit.replace('sigma', 'σ') : '';
   const radius = i => typeof data.radius === 'number' ? data.radius : data.radius[i];
   const largest = typeof data.radius === 'number' ? data.radius : data.radius.reduce((a, b) => Math.max(a, b), 0);
@@ -35,7 +44,7 @@
   const low = [Math.min(lower[0] + least(shifts[0]), x.low - largest), lower[1] + least(shifts[1]), bottom];
   const high = [Math.max(upper[0] + most(shifts[0]), x.high + largest), upper[1] + most(shifts[1]), top];
   const centre = low.map((l, a) => (l + high[a]) / 2), distance = 3 * Math.hypot(...low.map((l, a) => high[a] - l));
-  const state = {frame: 0, playing: null, zoom: 1, turn: Math.PI / 6, tilt: Math.PI / 12, pan: [0, 0], tracks: data.tracks};
+  const state = {frame: 0, playing: null, zoom: 1, turn: Math.PI / 6, tilt: Math.PI / 12, pan: [0, 0], tracks: data.tracks, vectors: true, contacts: true};
   function turned(r) {
     const d = r.map((v, a) => v - centre[a]);
     if (!solid) return [d[0], d[2], 1, 0];
@@ -61,7 +70,7 @@
     const [right, up, larger, depth] = turned(r);
     return {x: origin[0] + scale * right, y: origin[1] - scale * up, scale: scale * larger, depth};
   }
-  const bead = (frame, i) => { const k = frame * n + i; return [x.at(k), solid ? y.at(k) : 0, z.at(k)]; };
+  const bead = (frame, i) => vectorAt(positions, frame * n + i);
 
   // ---- drawing ----
   let shown = [];  // beads of the frame on the canvas, the farthest first
@@ -132,6 +141,49 @@
       pen.stroke();
     }
   }
+  // Lines from centre to centre, or to the wall, as wide as the force; a light rim keeps them readable on dark beads.
+  function drawContacts() {
+    const lines = [], most = contacts.force.high;
+    for (let k = data.contacts.first[state.frame]; k < data.contacts.first[state.frame + 1] && most > 0; ++k) {
+      const from = bead(state.frame, contacts.bead[k]), line = vectorAt(contacts.line, k);
+      if (Number.isNaN(from[0])) continue;
+      const a = project(from), b = project(from.map((v, c) => v + line[c])), width = data.contacts.widest * a.scale * contacts.force.at(k) / most;
+      if (width >= 0.25) lines.push([a, b, Math.max(1, width)]);
+    }
+    for (const [colour, more] of [['#ebebeb', 2], ['#1e1e1e', 0]]) {
+      pen.strokeStyle = colour;
+      for (const [a, b, width] of lines) {
+        pen.lineWidth = width + more;
+        pen.beginPath();
+        pen.moveTo(a.x, a.y);
+        pen.lineTo(b.x, b.y);
+        pen.stroke();
+      }
+    }
+    return lines.length;
+  }
+  function drawVectors() {
+    const stretch = data.velocity.longest / data.velocity.fastest, ratio = window.devicePixelRatio || 1;
+    let drawn = 0;
+    pen.strokeStyle = '#c82828';
+    pen.lineWidth = 1.3 * ratio;
+    pen.beginPath();
+    for (let i = 0; i < n && data.velocity.fastest > 0; ++i) {
+      const from = bead(state.frame, i), v = vectorAt(velocity, state.frame * n + i);
+      if (Number.isNaN(from[0] + v[0])) continue;
+      const a = project(from), b = project(from.map((r, c) => r + stretch * v[c])), along = Math.atan2(b.y - a.y, b.x - a.x);
+      const head = Math.min(0.35 * Math.hypot(b.x - a.x, b.y - a.y), 7 * ratio);
+      pen.moveTo(a.x, a.y);
+      pen.lineTo(b.x, b.y);
+      for (const side of [-0.45, 0.45]) {
+        pen.moveTo(b.x, b.y);
+        pen.lineTo(b.x - head * Math.cos(along + side), b.y - head * Math.sin(along + side));
+      }
+      ++drawn;
+    }
+    pen.stroke();
+    return drawn;
+  }
   function drawScaleBar() {
     const mm = data.sigma_mm, per = mm || 1, room = canvas.width / 4 / (scale / per), decade = Math.pow(10, Math.floor(Math.log10(room)));
     const length = [5, 2, 1].map(s => s * decade).find(l => l <= room * (1 + 1e-9)), ratio = window.devicePixelRatio || 1;
@@ -148,6 +200,8 @@
     drawCell();
     if (state.tracks > 0) drawTracks();
     drawBeads();
+    document.body.dataset.contacts = contacts && state.contacts ? drawContacts() : 0;
+    document.body.dataset.vectors = velocity && state.vectors ? drawVectors() : 0;
     drawScaleBar();
     $('frame').value = state.frame;
     $('frame-label').textContent = `${data.numbers[state.frame]}: ${data.titles[state.frame]}`;
@@ -178,6 +232,10 @@
   $('play').addEventListener('click', () => play(!state.playing));
   $('speed').addEventListener('change', () => play(Boolean(state.playing)));
   $('tracks').addEventListener('change', () => { state.tracks = Number($('tracks').value); draw(); });
+  for (const [id, present] of [['vectors', velocity], ['contacts', contacts]]) {
+    $('with-' + id).hidden = !present;
+    $(id).addEventListener('change', () => { state[id] = $(id).checked; draw(); });
+  }
   function zoom(factor, at) {
     const box = canvas.getBoundingClientRect(), before = state.zoom;
     state.zoom = Math.min(64, Math.max(1, factor));
@@ -240,6 +298,14 @@
       $('key').append(' ', grey);
     }
   }
+  const scaleOf = (what, value, unit) => {
+    const text = document.createElement('span');
+    text.className = 'keyed';
+    text.textContent = `${what}: ${+value.toPrecision(3)} ${unit}`;
+    $('key').append(' ', text);
+  };
+  if (velocity) scaleOf('longest arrow', data.velocity.fastest, 'σ/t0');
+  if (contacts) scaleOf('widest line', contacts.force.high, 'm g');
   $('hint').textContent = `Space: play or pause; arrows: one frame; wheel: zoom; drag: ${solid ? 'turn, with Shift move' : 'move'}; point at a bead for its numbers.`;
   document.body.classList.add('live');
   window.addEventListener('resize', draw);

@@ -18,9 +18,7 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr double kRadius = 0.5;      // of a bead whose radius is not known, sigma
-constexpr double kLongestArrow = 2;  // sigma
-constexpr double kWidestLine = 0.4;  // sigma
+constexpr double kRadius = 0.5;  // of a bead whose radius is not known, sigma
 const cv::Scalar kInk(40, 40, 40), kWall(60, 60, 60), kPeriodic(205, 205, 205), kTrack(120, 120, 120),
     kArrow(40, 40, 200), kChain(30, 30, 30), kRim(235, 235, 235);
 
@@ -352,24 +350,14 @@ class Painter {
 };
 
 void check(const TrajectorySource& source, const DrawJob& job) {
-  const TrajectoryInfo& info = source.info();
-  const auto refuse = [&](const char* key, const std::string& why) {
-    throw ConfigError(Where{.file = source.name(), .key = key}, why);
-  };
   const std::string kind = job.output.extension().string();
   if (kind != ".png" && kind != ".mp4" && kind != ".avi")
     throw ConfigError(
         Where{.file = {}, .key = "--output"},
         fmt::format("is '{}'; a picture is written as .png, a film as .mp4 or .avi, a page as .html.",
                     job.output.string()));
-  if (job.vectors && !info.columns.velocity)
-    refuse("--vectors", "needs velocities, which this trajectory does not have.");
-  if (job.contacts && !info.columns.contact_forces)
-    refuse("--contacts", "needs contacts (simulate --contacts), which this trajectory does not have.");
-  check_colours(job.colours);
+  require_drawable(source, job);
 }
-
-}  // namespace
 
 void check_colours(const BeadColours& colours) {
   if (!colours.range) return;
@@ -380,6 +368,20 @@ void check_colours(const BeadColours& colours) {
   if (!std::isfinite(low) || !std::isfinite(high) || low >= high)
     throw ConfigError(Where{.file = {}, .key = "--colour-range"},
                       fmt::format("is {:g} to {:g}, but must be a number and a larger one.", low, high));
+}
+
+}  // namespace
+
+void require_drawable(const TrajectorySource& source, const DrawJob& job) {
+  const TrajectoryInfo& info = source.info();
+  const auto refuse = [&](const char* key, const std::string& why) {
+    throw ConfigError(Where{.file = source.name(), .key = key}, why);
+  };
+  if (job.vectors && !info.columns.velocity)
+    refuse("--vectors", "needs velocities, which this trajectory does not have.");
+  if (job.contacts && !info.columns.contact_forces)
+    refuse("--contacts", "needs contacts (simulate --contacts), which this trajectory does not have.");
+  check_colours(job.colours);
 }
 
 std::string frame_title(const Frame& frame, const TrajectoryInfo& info) {

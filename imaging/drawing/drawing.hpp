@@ -64,8 +64,12 @@ Vec3 cell_displacement(const Frame& frame, const TrajectoryInfo& info);
 /// Projection of the chosen frames: from the lowest plate to one sigma above the highest bead.
 View view_of(const TrajectorySource& source, const DrawJob& job);
 
-/// \throws ConfigError for a range of colours without a number, or whose ends are not two increasing numbers
-void check_colours(const BeadColours& colours);
+/// \throws ConfigError for vectors or contacts that the trajectory lacks, and for a range of colours without
+/// a number, or whose ends are not two increasing numbers
+void require_drawable(const TrajectorySource& source, const DrawJob& job);
+
+/// Longest arrow and widest line of a drawing, sigma.
+inline constexpr double kLongestArrow = 2, kWidestLine = 0.4;
 
 /// Draws the frames and writes the picture or the film, complete or not at all.
 /// \throws ConfigError for another extension, frames that the trajectory lacks, or data that it lacks;

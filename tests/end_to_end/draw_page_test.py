@@ -11,6 +11,8 @@ import pathlib
 import subprocess
 import sys
 
+import h5py
+
 from browser import check_fit, prepare, run, watched_browser
 
 SCENE = """preset = "fortini-huang-2015"
@@ -142,9 +144,28 @@ def check_tracks(browser):
     slide(browser, "tracks", 0, "change")
 
 
+def check_arrows_and_lines(browser, frames, counts):
+    """Arrows lie along the velocities, the longest 2 sigma long; contacts are lines as wide as their force; both can be hidden."""
+    fastest = max(sum(float(row[v]) ** 2 for v in ("vx", "vy")) ** 0.5 for rows in frames.values() for row in rows)
+    slide(browser, "frame", 3)
+    assert int(browser.value("document.body.dataset.vectors")) == len(frames[3])
+    on_arrow = 0
+    for row in frames[3]:
+        x, z = (float(row[r]) + 0.6 * 2 / fastest * float(row[v]) for r, v in (("x", "vx"), ("y", "vy")))
+        beside = [colour_at(browser, x + px, -z) for px in (-0.015, 0, 0.015)]  # about a pixel
+        on_arrow += any(red > green + 60 and red > blue + 60 for red, green, blue in beside)
+    assert on_arrow > 0.8 * len(frames[3]), f"{on_arrow} of {len(frames[3])} arrows lie along their velocity"
+    most = max(range(len(counts)), key=counts.__getitem__)
+    slide(browser, "frame", most)
+    assert 0.5 * counts[most] < int(browser.value("document.body.dataset.contacts")) <= counts[most]
+    for name in ("vectors", "contacts"):
+        browser.click(f"document.getElementById('{name}')")
+        assert browser.value(f"document.body.dataset.{name}") == "0", f"{name} can be hidden"
+
+
 def check_bound(program, folder, trajectory):
-    done = subprocess.run([program, "draw", trajectory, "-o", folder / "page.html", "--vectors"], capture_output=True, text=True)
-    assert done.returncode == 2 and "--vectors" in done.stderr, done
+    done = subprocess.run([program, "draw", trajectory, "-o", folder / "page.html", "--contacts"], capture_output=True, text=True)
+    assert done.returncode == 2 and "needs contacts" in done.stderr, done
     done = subprocess.run([program, "draw", trajectory, "-o", folder / "page.html", "--colour", "speed", "--colour-range", "2", "1"], capture_output=True, text=True)
     assert done.returncode == 2 and "a larger one" in done.stderr, done
 
@@ -163,6 +184,10 @@ def main():
     assert said["frames"] == 20 and abs(said["megabytes"] * 1e6 - page.stat().st_size) < 1, said
     run(program, "draw", scratch / "balls.h5", "-o", solid, "-q")
     frames = table(program, scratch / "flat.h5", scratch / "flat.csv")
+    run(program, "simulate", scratch / "flat.toml", "--set", "drive.gamma=0.9", "--contacts", "-o", scratch / "held.h5", "-q")
+    run(program, "draw", scratch / "held.h5", "-o", scratch / "held.html", "--vectors", "--contacts", "-q")
+    held = table(program, scratch / "held.h5", scratch / "held.csv")
+    counts = [int(n) for n in h5py.File(scratch / "held.h5")["twincell/contact_forces/count"][:]]
     with watched_browser(chromium) as browser:
         for width, height in ((1280, 900), (390, 844)):
             browser.open(page.resolve().as_uri(), width, height)
@@ -176,6 +201,9 @@ def main():
                 check_hover(browser, frames)
             if pictures:
                 browser.picture(pictures / f"draw_page_{width}.png")
+        assert browser.value("getComputedStyle(document.getElementById('with-vectors')).display") == "none", "no switch without velocities"
+        browser.open((scratch / "held.html").resolve().as_uri(), 1280, 900)
+        check_arrows_and_lines(browser, held, counts)
         browser.open(solid.resolve().as_uri(), 1280, 900)
         assert int(browser.value("document.body.dataset.shown")) == 30
         if pictures:
