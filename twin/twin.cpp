@@ -253,7 +253,7 @@ std::string twin_scene(const std::string& base, const std::string& base_name,
   Config measured =
       Config::from_text(stated + (scale.empty() ? "" : "[scale]\n" + scale), "the cell description");
   scene.yield_to(measured, "drive", {"amplitude", "omega", "frequency", "gamma", "k_m", "peak_velocity"});
-  scene.yield_to(measured, "start", {"kind", "from", "frame", "velocity_scale"});
+  scene.yield_to(measured, "start", {"kind", "from", "frame", "velocity_scale", "fraction"});
   scene.overlay(std::move(measured));
   return resolved_text(scene);
 }

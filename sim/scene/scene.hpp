@@ -122,8 +122,11 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
   std::filesystem::path from;  ///< file of a trajectory or table start; relative to the scene's folder
   std::size_t frame = 0;
   bool in_motion = false;  ///< trajectory or table start: velocities, spins and springs are kept, no settling
-  double perturbation = 0;     ///< largest seeded random displacement of each coordinate, sigma
-  double velocity_scale = 1;   ///< random start: largest speed component, sigma/t0
+  double perturbation = 0;    ///< largest seeded random displacement of each coordinate, sigma
+  double velocity_scale = 1;  ///< random start: largest speed component, sigma/t0
+  /// Random start: the share of the column's area (3D: volume) that the beads take. It decides the height
+  /// from which they fall. Absent: 0.4 (3D: 0.25).
+  std::optional<double> fraction;
   double rest_energy = 1e-12;  ///< kinetic energy per bead below which the bed is at rest, m g sigma
   double settle_limit = 100;   ///< longest settling time, t0
   bool relax = false;          ///< overlaps of any depth are removed first

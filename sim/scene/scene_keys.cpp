@@ -371,6 +371,14 @@ void add_start_and_time(Rows& rows) {
        "largest initial speed along each axis, for a random start "
        "only",
        {"start.kind=random"}},
+      {"start.fraction",
+       "1",
+       "0.4 (3D: 0.25)",
+       "0.1",
+       "share of the column's area (3D: volume) that the beads of a random start take before they fall: the "
+       "smaller, "
+       "the taller the column and the later the last beads land. At most 0.5 (3D: 0.35)",
+       {"start.kind=random"}},
       {"start.rest_energy", "m g σ", "1e-12", "1e-10",
        "kinetic energy per bead below which a bed counts as at rest"},
       {"start.relax", "", "false", "true",

@@ -34,7 +34,8 @@ struct StartRow {
   std::string_view help;
   bool from_file;   ///< the beads are those of start.from; start.in_motion can keep their motion
   bool has_frames;  ///< the file has several frames; start.frame selects one
-  bool draws;       ///< positions are drawn with start.seed, and velocities with start.velocity_scale
+  bool draws;  ///< positions are drawn with start.seed, and velocities with start.velocity_scale, in a column
+               ///< of start.fraction
   bool sets_radii;  ///< the file sets the radii, so that beads.spread cannot
   Start (*make)(const Scene& scene, Progress& progress);
 };

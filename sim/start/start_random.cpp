@@ -14,8 +14,8 @@ namespace twincell::sim {
 
 namespace {
 
-/// Height of a column in which random positions are found quickly: random placement becomes slow near its
-/// limit, 0.547 of the area in 2D and 0.38 of the volume in 3D.
+/// Height of the column of which the beads take the share Scene::fraction, but at least six radii.
+/// \throws ConfigError if a stated share has no effect or does not fit below the ceiling
 double column_height(const Scene& scene, const std::vector<double>& radii) {
   const bool flat = scene.dimension == 2;
   const double r = scene.radius, powers = flat ? 2 : 3;
@@ -23,12 +23,22 @@ double column_height(const Scene& scene, const std::vector<double>& radii) {
   for (const double radius : radii) in_beads += std::pow(radius / r, powers);
   if (scene.intruder) in_beads += std::pow(scene.intruder->radius / r, powers);
   const double filled =
-      flat ? in_beads * std::numbers::pi * r * r / (0.4 * scene.width)
-           : in_beads * 4 / 3 * std::numbers::pi * r * r * r / (0.25 * scene.width * scene.depth);
+      flat ? in_beads * std::numbers::pi * r * r / (scene.fraction.value_or(0.4) * scene.width)
+           : in_beads * 4 / 3 * std::numbers::pi * r * r * r /
+                 (scene.fraction.value_or(0.25) * scene.width * scene.depth);
   const double needed =
       std::max({6 * r, filled, scene.intruder ? scene.intruder->z + scene.intruder->radius : 0.0});
   const double ceiling = ceiling_of(scene);
-  return scene.g() == 0 && std::isfinite(ceiling) ? ceiling : std::min(needed, ceiling);
+  const bool fills_cell = scene.g() == 0 && std::isfinite(ceiling);
+  if (scene.fraction && fills_cell)
+    throw ConfigError(scene.where("start.fraction"),
+                      "has no effect: without gravity the beads are placed in the whole cell.");
+  if (scene.fraction && needed > ceiling)
+    throw ConfigError(
+        scene.where("start.fraction"),
+        fmt::format("is {:g}, which needs a column of {:.4g} sigma, but the cell ends at {:.4g}.",
+                    *scene.fraction, needed, ceiling));
+  return fills_cell ? ceiling : std::min(needed, ceiling);
 }
 
 }  // namespace

@@ -82,8 +82,8 @@ TEST(Scene, H21_NumbersThatCannotBe) {
   for (const char* key :
        {"cell.width", "cell.height", "cell.gravity", "cell.tilt", "cell.side_tilt", "cell.plate_drag",
         "beads.radius", "beads.mass", "beads.layers", "drive.amplitude", "drive.omega", "drive.ramp_cycles",
-        "start.perturbation", "start.velocity_scale", "start.rest_energy", "start.settle_limit",
-        "time.steps_per_contact", "contact.overlap_bound"})
+        "start.perturbation", "start.velocity_scale", "start.fraction", "start.rest_energy",
+        "start.settle_limit", "time.steps_per_contact", "contact.overlap_bound"})
     for (const char* value : {"nan", "inf", "-inf", "\"one\"", "-1e9", "true"}) {
       const std::string said = complaint(kGood, {std::string(key) + "=" + value});
       EXPECT_NE(said.find(key), std::string::npos) << key << " = " << value << ": " << said;
@@ -392,6 +392,8 @@ TEST(Contact, APresetsKeysGiveWayAndAreNamed) {
 }
 
 TEST(Scene, KeysOfAnotherStartOrCellAreRefused) {
+  expect_complaint(kGood + "[start]\nfraction = 0.1\n",
+                   "start.fraction: sets the column of a random start, but start.kind is not");
   expect_complaint(kGood + "[start]\nvelocity_scale = 2.0\n",
                    "start.velocity_scale: sets the speeds of a random start, but start.kind is not");
   expect_complaint(kGood + "[cell]\ngravity = 0.0\ntilt = 3.0\n", "cell.tilt: turns gravity");

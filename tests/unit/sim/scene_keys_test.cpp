@@ -36,6 +36,7 @@ std::string told(const Assignments& assignments) {
        s.velocity_scale, s.rest_energy, s.settle_limit, s.relax, s.steps_per_contact, s.allow_unstable_step,
        s.integrator, static_cast<int>(s.stepping), s.discard, s.cycles, s.phases, s.springs, s.contacts,
        s.rotation, s.history);
+  number(s.fraction);
   number(s.samples);
   if (s.until) tell(s.until->quantity, s.until->relative, s.until->absolute);
   number(s.scale.sigma_m);

@@ -12,6 +12,7 @@
 
 #include "core/error.hpp"
 #include "sim/system/cell_grid.hpp"
+#include "tests/support/complaint.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
@@ -267,6 +268,30 @@ TEST(Random, DrawsFromTheSeedAlone) {
   EXPECT_EQ(beads[0].x, 0.5 + 19 * (static_cast<double>(engine() >> 11) * 0x1p-53));
   EXPECT_NE(random_deposit(scene(kFlat, {"beads.count=50", "start.kind=random", "start.seed=6"})).beads[0].x,
             beads[0].x);
+}
+
+// The beads take the stated share of the column up to the highest one.
+TEST(Random, TheFractionSetsTheColumn) {
+  for (const double fraction : {0.4, 0.1, 0.03}) {
+    const Scene s =
+        scene(kFlat, {"beads.count=400", "start.kind=random", "start.fraction=" + std::to_string(fraction)});
+    const auto beads = random_deposit(s).beads;
+    EXPECT_GE(smallest_gap(beads, s), -1e-12);
+    double top = 0;
+    for (const Bead& b : beads) top = std::max(top, b.z + 0.5);
+    EXPECT_NEAR(400 * std::numbers::pi / 4 / (s.width * top), fraction, 0.03 * fraction);
+  }
+  const auto plain = random_deposit(scene(kFlat, {"beads.count=50", "start.kind=random"})).beads,
+             stated =
+                 random_deposit(scene(kFlat, {"beads.count=50", "start.kind=random", "start.fraction=0.4"}))
+                     .beads;
+  for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_EQ(plain[i].z, stated[i].z);  // 0.4 is the default
+  expect_refusal<ConfigError>(
+      [] {
+        random_deposit(scene(kFlat, {"beads.count=400", "start.kind=random", "start.fraction=0.1",
+                                     "cell.height=30", "cell.lid=wall"}));
+      },
+      "start.fraction", "needs a column of 157.1 sigma, but the cell ends at 30");
 }
 
 TEST(Random, ManyBeadsInSpaceTakeNoTime) {
