@@ -220,8 +220,8 @@ class AllPairsSolver : public Solver {
           std::any_of(walls_[w].memory.begin(), walls_[w].memory.end(), [](double m) { return m != 0; });
     }
     if (s.plate_drag > 0) {
-      const Vec3 v = plate_velocity(s);
-      beads_.add_plate_drag(s, v.x(), v.z(), 0, beads_.size());
+      const Vec3 v = s.plate_velocity_in_space();
+      beads_.add_plate_drag(s, v.x(), v.z(), quantum_, 0, beads_.size());
     }
     return overlap;
   }

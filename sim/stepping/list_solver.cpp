@@ -329,7 +329,7 @@ void ListSolver::wall_forces(const System& s, Part& part) {
     part.wall_visits += near.count;
   }
   if (s.plate_drag > 0)
-    beads_.packed.add_plate_drag(s, plate_.velocity.x(), plate_.velocity.z(), part.share.begin,
+    beads_.packed.add_plate_drag(s, plate_.velocity.x(), plate_.velocity.z(), quantum_, part.share.begin,
                                  part.share.end);
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/contact/plate_drag.hpp"
+
 namespace twincell::sim {
 
 namespace {
@@ -162,14 +164,14 @@ void PackedBeads::drift(double time) {
       records_.data()[stride * k + c] += time * records_.data()[stride * k + half + c];
 }
 
-void PackedBeads::add_plate_drag(const System& s, double velocity_x, double velocity_z, std::size_t begin,
-                                 std::size_t end) {
+void PackedBeads::add_plate_drag(const System& s, double velocity_x, double velocity_z, double quantum,
+                                 std::size_t begin, std::size_t end) {
   for (std::size_t k = begin; k < end; ++k) {
     const double* r = records_.data() + kRecord<2> * k;
     double* f = forces_.data() + kForceRecord<2> * k;
     const double drag = s.plate_drag * mass(k);
-    f[0] -= drag * (r[2] - velocity_x);
-    f[1] -= drag * (r[3] - velocity_z);
+    f[0] += plate_drag_force(drag, r[2], velocity_x, quantum);
+    f[1] += plate_drag_force(drag, r[3], velocity_z, quantum);
   }
 }
 

@@ -68,8 +68,8 @@ class PackedBeads {
   /// Moves all beads along their velocities for a time that may be negative.
   void drift(double time);
   /// Adds the drag of the front and back plates to the forces (2D).
-  void add_plate_drag(const System& s, double velocity_x, double velocity_z, std::size_t begin,
-                      std::size_t end);
+  void add_plate_drag(const System& s, double velocity_x, double velocity_z, double quantum,
+                      std::size_t begin, std::size_t end);
 
  private:
   void give_one(std::size_t k, Bead& bead, Force& force) const;

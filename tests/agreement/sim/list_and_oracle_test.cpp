@@ -57,6 +57,9 @@ System shaken(const std::string& extra, SolverKind kind, std::int64_t rebuild_ev
 
 const std::string kPaperOne =
     "[cell]\nwidth = 8.0\n[contact]\nk_n = 1e5\ngamma_n = 10.0\ngamma_t = 10.0\nk_t = 2e3\n";
+const std::string kPlateDrag =
+    "[cell]\nwidth = 8.0\nplate_drag = 0.3\n[contact]\nk_n = 1e5\ngamma_n = 10.0\ngamma_t = 10.0\nk_t = "
+    "2e3\n";
 const std::string kDashpot =
     "[cell]\nwidth = 8.0\nsides = \"periodic\"\n[contact]\nk_n = 1e5\nrestitution = 0.9\ntangential = "
     "\"dashpot\"\nc_t_over_c_n = 1.0\nmu = 0.4\n";
@@ -75,8 +78,9 @@ std::string by(const std::string& integrator) {
 }
 
 TEST(ListSolver, AgreesWithTheOracleToTheBit) {
-  for (const auto& law : {kPaperOne, kDashpot, kSmooth, kPaperOne + by("predicted"), kPaperOne + by("split"),
-                          kSmooth + by("split"), kSpace + by("split")})
+  for (const auto& law :
+       {kPaperOne, kPlateDrag, kDashpot, kSmooth, kPaperOne + by("predicted"), kPaperOne + by("split"),
+        kPlateDrag + by("split"), kSmooth + by("split"), kSpace + by("split")})
     EXPECT_TRUE(same_bits(shaken(law, SolverKind::best, 0), shaken(law, SolverKind::all_pairs, 0))) << law;
 }
 
@@ -92,8 +96,8 @@ TEST(AllPairsSolver, ManyContactsAtATimeHaveTheBitsOfOne) {
 
 // V2.14, H22, H24: contact history is neither lost nor duplicated
 TEST(ListSolver, RebuildHabitsChangeNothing) {
-  for (const auto& law : {kPaperOne, kDashpot, kPaperOne + by("predicted"), kPaperOne + by("split"),
-                          kSmooth + by("split"), kSpace + by("split")}) {
+  for (const auto& law : {kPaperOne, kPlateDrag, kDashpot, kPaperOne + by("predicted"),
+                          kPaperOne + by("split"), kSmooth + by("split"), kSpace + by("split")}) {
     const System seldom = shaken(law, SolverKind::best, 0);
     EXPECT_TRUE(same_bits(seldom, shaken(law, SolverKind::best, 1))) << law;
     EXPECT_TRUE(same_bits(seldom, shaken(law, SolverKind::best, 7))) << law;
