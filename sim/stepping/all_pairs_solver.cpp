@@ -180,8 +180,7 @@ class AllPairsSolver : public Solver {
       if (period == 0) continue;
       for (Size k = 0; k < pairs_.count; ++k) {
         const double apart = r[static_cast<Size>(pairs_.i[k]) + c] - r[static_cast<Size>(pairs_.j[k]) + c];
-        pairs_.shift[place(k, c, dimension_)] =
-            2 * std::abs(apart) >= period ? -period * nearest_whole(apart / period) : 0;
+        pairs_.shift[place(k, c, dimension_)] = nearest_shift(apart, period);
       }
     }
   }

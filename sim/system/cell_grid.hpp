@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/system/nearest_image.hpp"
 #include "sim/system/system.hpp"
 
 namespace twincell::sim {
@@ -17,19 +18,10 @@ inline Vec3 centre_of(const Bead& b) {
   return {b.x, b.y, b.z};
 }
 
-/// The nearest integer; a tie gives the even one. For moderate |x|: adding 1.5 2^52 rounds without the
-/// function call of std::round.
-inline double nearest_whole(double x) {
-  constexpr double kRounds = 6755399441055744.0;
-  return (x + kRounds) - kRounds;
-}
-
 /// Shift to the nearest periodic image: r + nearest_shift(r) is the shortest. Period 0: not periodic.
 inline Vec3 nearest_shift(const Vec3& r, const std::array<double, 3>& period) {
   Vec3 shift = Vec3::Zero();
-  for (int a = 0; a < 3; ++a)
-    if (const double p = period[static_cast<std::size_t>(a)]; p > 0 && 2 * std::abs(r[a]) >= p)
-      shift[a] = -p * nearest_whole(r[a] / p);
+  for (int a = 0; a < 3; ++a) shift[a] = nearest_shift(r[a], period[static_cast<std::size_t>(a)]);
   return shift;
 }
 

@@ -1,0 +1,45 @@
+#pragma once
+/// \file
+/// Collects the beds that many threads want to advance, and advances them together.
+
+#include <condition_variable>
+#include <cstddef>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "sim/device/executor.hpp"
+
+namespace twincell::sim {
+
+/// While a launch is in progress, the beds that arrive wait; the next launch takes all of them. No bed waits
+/// for another that has not arrived, so threads that do something else delay nobody.
+class Batcher {
+ public:
+  explicit Batcher(std::unique_ptr<Executor> executor) : executor_(std::move(executor)) {}
+
+  [[nodiscard]] Executor& executor() { return *executor_; }
+  /// Advances a bed, with all that wait for the same kernel. Returns when it has been advanced.
+  /// \throws what the executor throws, in each of the threads concerned
+  void advance(const DeviceKernel& kernel, const DeviceBed& bed);
+  /// Number of beds that wait for the next launch.
+  [[nodiscard]] std::size_t waiting();
+
+ private:
+  struct Request {
+    const DeviceKernel* kernel;
+    const DeviceBed* bed;
+    bool done = false;
+    std::exception_ptr error = {};
+  };
+  void launch(const std::vector<Request*>& requests);
+
+  std::unique_ptr<Executor> executor_;
+  std::mutex mutex_;  ///< guards the members below
+  std::condition_variable changed_;
+  std::vector<Request*> waiting_;
+  bool launching_ = false;
+};
+
+}  // namespace twincell::sim

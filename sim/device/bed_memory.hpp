@@ -1,0 +1,33 @@
+#pragma once
+/// \file
+/// Layout of a bed in one piece of memory of the device.
+
+#include <cstddef>
+
+#include "sim/device/bed.hpp"
+
+namespace twincell::sim {
+
+/// Largest number of steps of a launch; longer calls are several launches.
+inline constexpr std::int64_t kStepsPerLaunch = 512;
+
+struct BedSizes {
+  int dimension = 2;
+  std::size_t beads = 0, walls = 0, kinds = 0, slots = 0;
+  std::size_t constants = 0, memory = 0;  ///< numbers per kind of contact, and remembered by a contact
+};
+
+/// Ends of the parts of the memory, bytes. Each part is transferred at once.
+struct BedParts {
+  std::size_t state;     ///< records, spins, forces, report: read after each launch
+  std::size_t contacts;  ///< lists and memory: read for checkpoints
+  std::size_t constants;
+  std::size_t
+      surroundings;  ///< walls, drag: written, with the rows of the plate's motion, before each launch
+  std::size_t all;
+};
+
+/// Sets the pointers of a bed whose memory begins at `base`, which is not accessed.
+BedParts place_bed(DeviceBed& bed, const BedSizes& sizes, std::byte* base);
+
+}  // namespace twincell::sim

@@ -1,0 +1,19 @@
+#pragma once
+/// \file
+/// The combinations of contact laws for which the device kernel is compiled: the only list of them. To add
+/// one, add a line. A law whose force needs more than the operations of laws/real.hpp, such as the logarithm
+/// of "velocity-dependent-restitution", cannot be added. Each line costs four kernels, about a second of
+/// compiling.
+
+#include "sim/contact/contact.hpp"
+
+/// X(name of the kernel, normal law, tangential law)
+#define TWINCELL_DEVICE_LAWS(X)                               \
+  X(linear_none, LinearSpringDashpot, NoTangential)           \
+  X(linear_dashpot, LinearSpringDashpot, DashpotSlider)       \
+  X(linear_spring, LinearSpringDashpot, SpringSlider)         \
+  X(linear_limited, LinearSpringDashpot, SpringLimitedSlider) \
+  X(no_tension_none, NoTensionSpringDashpot, NoTangential)    \
+  X(no_tension_spring, NoTensionSpringDashpot, SpringSlider)  \
+  X(hertz_none, HertzViscoelastic, NoTangential)              \
+  X(hertz_mindlin, HertzViscoelastic, MindlinSlider)

@@ -1,0 +1,72 @@
+#include <cstring>
+#include <new>
+
+#include "sim/device/advance_bed.hpp"
+#include "sim/device/device_laws.hpp"
+#include "sim/device/executor.hpp"
+
+namespace twincell::sim {
+
+namespace {
+
+/// Execution space on one thread of the processor, which does the work of all threads of a block in turn.
+class HostSpace {
+ public:
+  explicit HostSpace(const HostThreads& threads) : threads_(threads) {}
+
+  template <class F>
+  void for_each(std::int32_t count, F f) const {
+    for (std::int32_t k = 0; k < threads_.count; ++k)
+      for (std::int32_t i = threads_.backwards ? threads_.count - 1 - k : k; i < count; i += threads_.count)
+        f(i);
+  }
+  template <class F>
+  void once(F f) const {
+    f();
+  }
+
+ private:
+  HostThreads threads_;
+};
+
+using BedFunction = void (*)(const HostSpace&, const DeviceBed&);
+
+/// By the index of device_kernel.hpp.
+constexpr BedFunction kFunctions[] = {
+#define TWINCELL_FUNCTIONS(name, normal, tangential)                                          \
+  &advance_bed<HostSpace, LawSet<normal, tangential, NoRolling>, 2, Velocity::half_step>,     \
+      &advance_bed<HostSpace, LawSet<normal, tangential, NoRolling>, 2, Velocity::full_step>, \
+      &advance_bed<HostSpace, LawSet<normal, tangential, NoRolling>, 3, Velocity::half_step>, \
+      &advance_bed<HostSpace, LawSet<normal, tangential, NoRolling>, 3, Velocity::full_step>,
+    TWINCELL_DEVICE_LAWS(TWINCELL_FUNCTIONS)
+#undef TWINCELL_FUNCTIONS
+};
+
+constexpr std::align_val_t kAlignment{64};
+
+class HostExecutor : public Executor {
+ public:
+  explicit HostExecutor(const HostThreads& threads) : space_(threads) {}
+
+  [[nodiscard]] std::byte* allocate(std::size_t bytes) override {
+    return static_cast<std::byte*>(::operator new(bytes, kAlignment));
+  }
+  void release(std::byte* memory) override { ::operator delete(memory, kAlignment); }
+  void write(std::byte* to, const void* from, std::size_t bytes) override { std::memcpy(to, from, bytes); }
+  void read(void* to, const std::byte* from, std::size_t bytes) override { std::memcpy(to, from, bytes); }
+  void advance(const DeviceKernel& kernel, const std::vector<DeviceBed>& beds) override {
+    for (const DeviceBed& bed : beds) kFunctions[kernel.index](space_, bed);
+  }
+  [[nodiscard]] std::string description() const override { return "device kernel on the processor"; }
+
+ private:
+  HostSpace space_;
+};
+
+}  // namespace
+
+std::unique_ptr<Executor> make_host_executor(const HostThreads& threads) {
+  return std::make_unique<HostExecutor>(threads);
+}
+
+}  // namespace twincell::sim

@@ -1,0 +1,21 @@
+#pragma once
+/// \file
+/// Nearest periodic image along one axis.
+
+#include <cmath>
+
+namespace twincell::sim {
+
+/// The nearest integer; a tie gives the even one. For moderate |x|: adding 1.5 2^52 rounds without the
+/// function call of std::round.
+inline double nearest_whole(double x) {
+  constexpr double kRounds = 6755399441055744.0;
+  return (x + kRounds) - kRounds;
+}
+
+/// Shift to the nearest periodic image: r + nearest_shift(r, period) is the shortest. Period 0: not periodic.
+inline double nearest_shift(double r, double period) {
+  return period > 0 && 2 * std::abs(r) >= period ? -period * nearest_whole(r / period) : 0;
+}
+
+}  // namespace twincell::sim
