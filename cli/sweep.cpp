@@ -20,6 +20,7 @@
 #include "core/error.hpp"
 #include "core/escape.hpp"
 #include "core/output_rules.hpp"
+#include "sim/run/make_solver.hpp"
 #include "sweep/collect.hpp"
 #include "sweep/farm.hpp"
 #include "sweep/results_figure.hpp"
@@ -36,7 +37,7 @@ Product collected_product() {
 }
 
 struct SweepOptions {
-  std::string plan, folder, shard, output, engine;
+  std::string plan, folder, shard, output, engine, device;
   sweep::FigureOptions figure;
   bool mpi = false, keep_trajectories = false, profile = false;
   int jobs = 8;
@@ -149,7 +150,26 @@ std::optional<std::string> final_picture(const sweep::Schedule& schedule, const 
   }
 }
 
+/// Where the points are computed, and how many at once.
+struct Workers {
+  sim::SolverKind solver = sim::SolverKind::best;
+  int count = 1;
+};
+/// \throws ConfigError if there is no device
+Workers workers_of(const SweepOptions& options, const Common& common) {
+  if (options.device == "host") return {sim::SolverKind::device_on_host, common.n_threads()};
+  if (options.device != "gpu") return {sim::SolverKind::best, common.n_threads()};
+  constexpr int kPoints = 256;
+  const std::string card = sim::graphics_card();
+  note(common,
+       fmt::format("{}. The kernel was tested on processors only; it has never run on a graphics card. "
+                   "Compare some points with a run without --device.",
+                   card));
+  return {sim::SolverKind::gpu, common.threads > 0 ? common.threads : kPoints};
+}
+
 void run_run(const SweepOptions& options, const Common& common) {
+  const Workers workers = workers_of(options, common);
   const sweep::Plan plan = plan_of(options, common);
   const sweep::Shard shard = shard_of(options.shard);
   Profile profile(options.profile);
@@ -160,14 +180,15 @@ void run_run(const SweepOptions& options, const Common& common) {
   if (!job || job->is_master()) schedule.emplace(plan, store, shard);
   if (schedule) {
     note_repeats(*schedule, common);
-    if (!job) require_memory_together(*schedule, common.n_threads(), "--threads");
+    if (!job) require_memory_together(*schedule, workers.count, "--threads");
   }
   {
     SweepWatch watch(common);
     if (job)
       run_on_ranks(schedule ? &*schedule : nullptr, plan, store, options.keep_trajectories, watch);
     else
-      run_here({&*schedule}, store, {common.n_threads(), options.keep_trajectories, profile.sum()}, watch);
+      run_here({&*schedule}, store, {workers.count, options.keep_trajectories, profile.sum(), workers.solver},
+               watch);
   }
   if (!schedule) return;
   nlohmann::json document = as_json(schedule->counts(), store.folder(), schedule->all());
@@ -178,7 +199,7 @@ void run_run(const SweepOptions& options, const Common& common) {
       document["figure"] = *picture;
       text += fmt::format("picture: {}; sweep plot draws other results\n", *picture);
     }
-  profile.add_to(document, text, common.n_threads());
+  profile.add_to(document, text, workers.count);
   print_result(common, document, text);
 }
 
@@ -315,6 +336,12 @@ void add_sweep(CLI::App& program, Common& common) {
                  "Compute only shard i of n, as i/n: every n-th point of a grid, or every n-th search; "
                  "default: 1/1, all");
   run.add_flag("--mpi", options->mpi, "Compute on the ranks of this MPI job, one point on each rank");
+  run.add_option(
+         "--device", options->device,
+         "Run the beds on a device: gpu, a graphics card with many beds at once (--threads, default 256); "
+         "host, the same kernel on the processor, to test it. The results are the same")
+      ->check(CLI::IsMember({"gpu", "host"}))
+      ->excludes("--mpi");
   run.add_flag("--keep-trajectories", options->keep_trajectories,
                "Store trajectory.h5 of every point that this command computes");
   add_profile_option(run, options->profile);

@@ -121,7 +121,7 @@ class Farm {
       const std::string result = run_point(
           schedule->plan(), task->point,
           options_.keep_trajectories ? store_.of(task->point) / "trajectory.h5" : std::filesystem::path(),
-          progress, times);
+          progress, times, options_.solver);
       {
         Stage storing(times, "storing", "points");
         store_.keep(task->point, result);

@@ -7,6 +7,7 @@
 
 #include "core/machine_memory.hpp"
 #include "core/stage_times.hpp"
+#include "sim/run/make_solver.hpp"
 #include "sweep/schedule.hpp"
 
 namespace twincell::sweep {
@@ -29,6 +30,7 @@ struct FarmOptions {
   /// Receives the times of the stages of run_point, "storing" and "waiting for points", summed over the
   /// threads; null: not timed.
   std::vector<StageTimes::Row>* times = nullptr;
+  sim::SolverKind solver = sim::SolverKind::best;
 };
 
 /// Checks that the open points with the largest memory demand can run at once. Later rounds of a search count

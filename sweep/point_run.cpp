@@ -88,7 +88,7 @@ double asked_of(const Plan& plan, const std::vector<analysis::Result>& results) 
 }  // namespace
 
 std::string run_point(const Plan& plan, const Point& point, const std::filesystem::path& trajectory,
-                      Progress& progress, StageTimes* times) {
+                      Progress& progress, StageTimes* times, sim::SolverKind solver) {
   const auto begin = std::chrono::steady_clock::now();
   nlohmann::json document = {{"id", point.id}, {"answer", nullptr}};
   std::int64_t cycles = 0;
@@ -100,7 +100,7 @@ std::string run_point(const Plan& plan, const Point& point, const std::filesyste
       return placed_in_turn(scene, progress);
     }();
     const std::int64_t all_cycles = scene.cycles;
-    sim::Simulation run(std::move(scene), std::move(state));
+    sim::Simulation run(std::move(scene), std::move(state), solver);
     document["conditions"] = conditions_json(run.trajectory_info().conditions);
     std::optional<StopRule> rule;
     std::unique_ptr<SharedWriter> writer;

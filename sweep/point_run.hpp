@@ -7,6 +7,7 @@
 
 #include "core/progress.hpp"
 #include "core/stage_times.hpp"
+#include "sim/run/make_solver.hpp"
 #include "sweep/plan.hpp"
 
 namespace twincell::sweep {
@@ -21,6 +22,7 @@ namespace twincell::sweep {
 /// \param times receives the times of "placing" and of the stages of the simulation and the analysis; null:
 /// not timed \throws Interrupted; Error if the trajectory cannot be written
 std::string run_point(const Plan& plan, const Point& point, const std::filesystem::path& trajectory,
-                      Progress& progress = Progress::none(), StageTimes* times = nullptr);
+                      Progress& progress = Progress::none(), StageTimes* times = nullptr,
+                      sim::SolverKind solver = sim::SolverKind::best);
 
 }  // namespace twincell::sweep

@@ -23,7 +23,7 @@ namespace twincell::sim {
 template <class Space, class Laws, int D, Velocity kVelocity>
 class BedKernel {
  public:
-  BedKernel(const Space& space, const DeviceBed& bed) : space_(space), bed_(bed), report_(*bed.report) {
+  BedKernel(const Space& space, const DeviceBed& bed) : space_(space), bed_(bed), report_(*bed_.report) {
     IntegrateArgs& a = integrate_;
     a = {};
     a.records = bed.records, a.spins = bed.spins, a.forces = bed.forces;
@@ -224,7 +224,7 @@ class BedKernel {
   }
 
   const Space& space_;
-  const DeviceBed& bed_;
+  const DeviceBed bed_;  // a copy that no store can alias
   BedReport& report_;
   IntegrateArgs integrate_;
   int list_ = 0;

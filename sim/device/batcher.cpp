@@ -3,6 +3,8 @@
 #include <map>
 #include <utility>
 
+#include "sim/device/cuda_executor.hpp"
+
 namespace twincell::sim {
 
 void Batcher::advance(const DeviceKernel& kernel, const DeviceBed& bed) {
@@ -41,6 +43,16 @@ void Batcher::launch(const std::vector<Request*>& requests) {
       for (Request* request : group) request->error = std::current_exception();
     }
   }
+}
+
+Batcher& gpu_batcher() {
+  static Batcher batcher(make_cuda_executor());
+  return batcher;
+}
+
+Batcher& host_batcher() {
+  static Batcher batcher(make_host_executor());
+  return batcher;
 }
 
 }  // namespace twincell::sim

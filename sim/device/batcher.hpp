@@ -42,4 +42,9 @@ class Batcher {
   bool launching_ = false;
 };
 
+/// The batchers of this process.
+/// \throws ConfigError if the program has no device code, or the machine no graphics card that it can use
+Batcher& gpu_batcher();
+Batcher& host_batcher();
+
 }  // namespace twincell::sim

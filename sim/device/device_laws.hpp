@@ -17,3 +17,13 @@
   X(no_tension_spring, NoTensionSpringDashpot, SpringSlider)  \
   X(hertz_none, HertzViscoelastic, NoTangential)              \
   X(hertz_mindlin, HertzViscoelastic, MindlinSlider)
+
+namespace twincell::sim {
+
+/// Number of these combinations. Each has four kernels: in 2D and 3D, with velocities at half and full steps.
+inline constexpr int kDeviceLawSets = 0
+#define TWINCELL_ONE(name, normal, tangential) +1
+    TWINCELL_DEVICE_LAWS(TWINCELL_ONE);
+#undef TWINCELL_ONE
+
+}  // namespace twincell::sim

@@ -12,11 +12,12 @@
 
 namespace twincell::sim {
 
-/// All functions may be called from any thread; advance() by one thread at a time.
+/// All functions may be called from any thread; advance() by one thread at a time. A failure of the machine is an
+/// Error, not the RunError of a bed: it says nothing about the scene.
 class Executor {
  public:
   virtual ~Executor() = default;
-  /// Memory of the machine, aligned to 64 bytes. \throws RunError if there is not enough
+  /// Memory of the machine, aligned to 64 bytes. \throws Error if there is not enough
   [[nodiscard]] virtual std::byte* allocate(std::size_t bytes) = 0;
   virtual void release(std::byte* memory) = 0;
   virtual void write(std::byte* to, const void* from, std::size_t bytes) = 0;

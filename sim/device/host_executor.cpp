@@ -1,4 +1,5 @@
 #include <cstring>
+#include <iterator>
 #include <new>
 
 #include "sim/device/advance_bed.hpp"
@@ -41,6 +42,8 @@ constexpr BedFunction kFunctions[] = {
     TWINCELL_DEVICE_LAWS(TWINCELL_FUNCTIONS)
 #undef TWINCELL_FUNCTIONS
 };
+
+static_assert(std::size(kFunctions) == 4 * kDeviceLawSets);
 
 constexpr std::align_val_t kAlignment{64};
 

@@ -1,6 +1,7 @@
 #include "sim/run/make_solver.hpp"
 
 #include "core/error.hpp"
+#include "sim/device/device_solver.hpp"
 #include "sim/event_driven/event_driven_solver.hpp"
 #include "sim/stepping/list_solver.hpp"
 
@@ -31,6 +32,10 @@ std::unique_ptr<Solver> make_solver(const Plan& plan, const GuardLimits& limits,
       return make_list_solver(plan, limits, kAvx2, threads);
     case SolverKind::avx512:
       return make_list_solver(plan, limits, kAvx512, threads);
+    case SolverKind::gpu:
+      return make_device_solver(plan, limits, gpu_batcher());
+    case SolverKind::device_on_host:
+      return make_device_solver(plan, limits, host_batcher());
     case SolverKind::best:
       break;
   }
@@ -40,6 +45,10 @@ std::unique_ptr<Solver> make_solver(const Plan& plan, const GuardLimits& limits,
       plan, limits,
       {[plan, limits, &widest, threads] { return make_list_solver(plan, limits, widest, threads); },
        [plan, limits, &widest] { return make_all_pairs_solver(plan, limits, widest); }});
+}
+
+std::string graphics_card() {
+  return gpu_batcher().executor().description();
 }
 
 }  // namespace twincell::sim

@@ -48,6 +48,7 @@ const std::map<std::string, std::string> kQuantities = {
     {"dark", "beads darker than the background"},
     {"data", "own points"},
     {"debug-dir", "pictures of the stages"},
+    {"device", "machine that runs the beds"},
     {"diameter", "diameter of the beads, px"},
     {"dimension", "dimension of the dump"},
     {"discard", "cycles skipped at the start"},

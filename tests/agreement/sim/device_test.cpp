@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "core/error.hpp"
 #include "sim/device/device_solver.hpp"
 #include "sim/run/make_solver.hpp"
 #include "tests/support/dense_bed.hpp"
@@ -92,6 +93,49 @@ TEST_P(Device, RestartDoesNotShow) {
                  last->advance(half.system, kSteps - 2 * (kSteps / 3));
                  EXPECT_TRUE(same_bits(reference, {std::move(half.system), last->contacts()})) << name;
                });
+}
+
+// More beads than threads of a block, for so long that lists expire, with drag, on a plate that moves far.
+TEST(DeviceSolver, KeepsItsListsOverALongRun) {
+  const Scene scene = read_scene_text(
+      "[cell]\nwidth = 12.0\nplate_drag = 0.3\n[beads]\ncount = 160\n[drive]\nomega = 1.0\ngamma = "
+      "3.0\n[contact]\nk_n = 1e5\ngamma_n = 10.0\ngamma_t = 10.0\nk_t = 2e3\n[start]\nkind = "
+      "\"random\"\n",
+      "shaken");
+  const Plan plan = make_plan(scene);
+  System start = make_system(scene, plan);
+  start.beads = make_start(scene).beads;
+  const std::int64_t steps = 2 * plan.steps_per_period;
+  const Outcome reference = by_oracle(plan, start, steps);
+  Batcher batcher(make_host_executor({.count = 128}));
+  const auto solver = make_device_solver(plan, kLimits, batcher);
+  System s = start;
+  solver->advance(s, steps);
+  EXPECT_TRUE(same_bits(reference, {s, solver->contacts()}));
+  EXPECT_GT(solver->list_builds(), 5);
+  EXPECT_LT(solver->list_builds(), steps / 50);
+}
+
+/// On the card of this machine.
+TEST(GraphicsCard, HasTheBitsOfTheOracle) {
+  try {
+    (void)gpu_batcher();
+  } catch (const ConfigError& e) {
+    GTEST_SKIP() << e.what();
+  }
+  constexpr std::int64_t kSteps = 700;
+  for (const Case& c : all_cases())
+    for (const Laws& laws : all_laws()) {
+      const Scene scene = scene_of(c, laws);
+      const Plan plan = make_plan(scene);
+      if (!find_device_kernel(plan.key)) continue;
+      const Outcome reference = by_oracle(plan, bed_of(scene, plan), kSteps);
+      System s = bed_of(scene, plan);
+      const auto solver = make_device_solver(plan, kLimits, gpu_batcher());
+      solver->advance(s, kSteps);
+      EXPECT_TRUE(same_bits(reference, {std::move(s), solver->contacts()}))
+          << testing::PrintToString(c) << ": " << laws.normal << ", " << laws.tangential;
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Device, testing::ValuesIn(all_cases()), name_of_case);
