@@ -28,7 +28,6 @@ class BedKernel {
     a = {};
     a.records = bed.records, a.spins = bed.spins, a.forces = bed.forces;
     a.inv_mass = bed.inv_mass, a.turn = bed.turn, a.inertia_step = 1;
-    a.n_runs = 1;
     a.reference = bed.records;  // the deviation from free flight is not used
     a.spin = bed.spin, a.dt = bed.dt;
     for (int c = 0; c < D; ++c) a.gravity[c] = bed.gravity[c];
@@ -70,7 +69,7 @@ class BedKernel {
     space_.for_each(bed_.beads, [&](std::int32_t b) {
       const BeadRange one{b, b + 1};
       IntegrateArgs a = integrate_;
-      a.runs = &one;
+      a.runs = &one, a.n_runs = 1;
       a.kicks = kicks;
       a.drift = drift;
       integrate_kernel<ScalarLanes, D>(a);

@@ -6,21 +6,21 @@ namespace twincell::sim {
 
 namespace {
 
-/// Hands out consecutive arrays, each from a new cache line on.
+/// Hands out consecutive arrays, each from a new cache line on. Without memory it only adds up their sizes.
 class Arrays {
  public:
-  explicit Arrays(std::byte* base) : base_(reinterpret_cast<std::uintptr_t>(base)) {}
+  explicit Arrays(std::byte* base) : base_(base) {}
 
   template <class T>
   void next(T*& array, std::size_t count) {
-    array = reinterpret_cast<T*>(base_ + used_);
+    array = base_ == nullptr ? nullptr : reinterpret_cast<T*>(base_ + used_);
     constexpr std::size_t kLine = 64;
     used_ = (used_ + count * sizeof(T) + kLine - 1) / kLine * kLine;
   }
   [[nodiscard]] std::size_t used() const { return used_; }
 
  private:
-  std::uintptr_t base_;
+  std::byte* base_;
   std::size_t used_ = 0;
 };
 

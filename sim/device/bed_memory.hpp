@@ -27,7 +27,8 @@ struct BedParts {
   std::size_t all;
 };
 
-/// Sets the pointers of a bed whose memory begins at `base`, which is not accessed.
+/// Sets the pointers of a bed whose memory begins at `base`, which is not accessed; null: only the ends of
+/// the parts.
 BedParts place_bed(DeviceBed& bed, const BedSizes& sizes, std::byte* base);
 
 }  // namespace twincell::sim

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <cstdint>
 #include <map>
 
@@ -36,7 +37,7 @@ class CudaExecutor : public Executor {
     CudaDriver::Pointer memory = 0;
     require(fmt::format("{} has no memory for a bed of {} bytes; use fewer --threads", name_, bytes),
             driver_.allocate(&memory, bytes));
-    return reinterpret_cast<std::byte*>(static_cast<std::uintptr_t>(memory));
+    return std::bit_cast<std::byte*>(static_cast<std::uintptr_t>(memory));
   }
   void release(std::byte* memory) override {
     // Called by destructors: an error shows in the next call.
@@ -80,7 +81,8 @@ class CudaExecutor : public Executor {
   /// Makes the card that of the calling thread.
   void use() { require("the driver does not open " + name_, driver_.set_context(context_)); }
   void require(const std::string& complaint, CudaDriver::Result result) const {
-    if (result != 0) throw Error(ExitCode::failed, fmt::format("{} ({}).", complaint, driver_.text_of(result)));
+    if (result != 0)
+      throw Error(ExitCode::failed, fmt::format("{} ({}).", complaint, driver_.text_of(result)));
   }
   /// Compiles the code of a kernel for the card when it is first used.
   CudaDriver::Function function_of(const DeviceKernel& kernel) {

@@ -20,10 +20,15 @@
 
 namespace twincell::sim {
 
-/// Number of these combinations. Each has four kernels: in 2D and 3D, with velocities at half and full steps.
-inline constexpr int kDeviceLawSets = 0
-#define TWINCELL_ONE(name, normal, tangential) +1
-    TWINCELL_DEVICE_LAWS(TWINCELL_ONE);
-#undef TWINCELL_ONE
+/// Index of each combination, and their number. Each has four kernels: in 2D and 3D, with velocities at half
+/// and full steps.
+struct DeviceLawSet {
+  enum Index : int {
+#define TWINCELL_INDEX(name, normal, tangential) name,
+    TWINCELL_DEVICE_LAWS(TWINCELL_INDEX)
+#undef TWINCELL_INDEX
+        kCount
+  };
+};
 
 }  // namespace twincell::sim

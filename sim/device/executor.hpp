@@ -12,8 +12,8 @@
 
 namespace twincell::sim {
 
-/// All functions may be called from any thread; advance() by one thread at a time. A failure of the machine is an
-/// Error, not the RunError of a bed: it says nothing about the scene.
+/// All functions may be called from any thread; advance() by one thread at a time. A failure of the machine
+/// is an Error, not the RunError of a bed: it says nothing about the scene.
 class Executor {
  public:
   virtual ~Executor() = default;

@@ -43,7 +43,7 @@ constexpr BedFunction kFunctions[] = {
 #undef TWINCELL_FUNCTIONS
 };
 
-static_assert(std::size(kFunctions) == 4 * kDeviceLawSets);
+static_assert(std::size(kFunctions) == 4 * DeviceLawSet::kCount);
 
 constexpr std::align_val_t kAlignment{64};
 

@@ -116,6 +116,21 @@ TEST(DeviceSolver, KeepsItsListsOverALongRun) {
   EXPECT_LT(solver->list_builds(), steps / 50);
 }
 
+TEST(DeviceSolver, OneBeadAndNoWalls) {
+  for (const std::string text :
+       {"[cell]\nwidth = 3.0\n[beads]\ncount = 1\n[drive]\nomega = 7.0\ngamma = 4.0\n",
+        "[cell]\ndimension = 3\nwidth = 5.0\ndepth = 5.0\nheight = 5.0\ngravity = 0.0\nsides = "
+        "\"periodic\"\nplates = \"periodic\"\nbottom = \"periodic\"\n[beads]\ncount = 40\n[drive]\namplitude "
+        "= 0.0\nomega = 1.0\n"}) {
+    const Scene scene = read_scene_text(text + "[time]\nstepping = \"steps\"\n", "gas");
+    const Plan plan = make_plan(scene);
+    const System start = bed_of(scene, plan);
+    const Outcome reference = by_oracle(plan, start, 3000);
+    EXPECT_TRUE(same_bits(reference, on_device(plan, start, 3000))) << text;
+    EXPECT_NE(reference.system.beads[0].vz, start.beads[0].vz);
+  }
+}
+
 /// On the card of this machine.
 TEST(GraphicsCard, HasTheBitsOfTheOracle) {
   try {

@@ -28,7 +28,7 @@ class DeviceCode : public testing::Test {
 };
 
 TEST_F(DeviceCode, HasEveryKernelThatTheSolverAsksFor) {
-  ASSERT_EQ(device_code().size(), static_cast<std::size_t>(kDeviceLawSets));
+  ASSERT_EQ(device_code().size(), static_cast<std::size_t>(DeviceLawSet::kCount));
   int kernels = 0;
   for (std::size_t normal = 0; normal < std::variant_size_v<NormalAxis>; ++normal)
     for (std::size_t tangential = 0; tangential < std::variant_size_v<TangentialAxis>; ++tangential)
@@ -40,7 +40,7 @@ TEST_F(DeviceCode, HasEveryKernelThatTheSolverAsksFor) {
           const std::string text = device_code()[static_cast<std::size_t>(kernel->index / 4)];
           EXPECT_EQ(count(text, ".visible .entry " + kernel->name + "("), 1U) << kernel->name;
         }
-  EXPECT_EQ(kernels, 4 * kDeviceLawSets);
+  EXPECT_EQ(kernels, 4 * DeviceLawSet::kCount);
 }
 
 TEST_F(DeviceCode, EveryOperationIsCorrectlyRounded) {
