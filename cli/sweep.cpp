@@ -338,8 +338,10 @@ void add_sweep(CLI::App& program, Common& common) {
   run.add_flag("--mpi", options->mpi, "Compute on the ranks of this MPI job, one point on each rank");
   run.add_option(
          "--device", options->device,
-         "Run the beds on a device: gpu, a graphics card with many beds at once (--threads, default 256); "
-         "host, the same kernel on the processor, to test it. The results are the same")
+         "Run the beds on a device, with the same results: gpu, a graphics card with many beds at once "
+         "(--threads, default 256), which was never tried on a card (docs/sweeps.md); host, the same kernel "
+         "on "
+         "the processor, to test it")
       ->check(CLI::IsMember({"gpu", "host"}))
       ->excludes("--mpi");
   run.add_flag("--keep-trajectories", options->keep_trajectories,
