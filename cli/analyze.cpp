@@ -101,10 +101,10 @@ nlohmann::json as_json(const std::vector<analysis::Window>& windows) {
 /// One line for each window: cycles, Gamma, omega, phase, then numbers.
 std::string as_text(const std::vector<analysis::Window>& windows, const std::vector<std::string>& only) {
   std::vector<std::string> names;
-  for (const analysis::Result& r : windows.front().results) {
+  for (const std::string& name : analysis::names_of_numbers(windows)) {
     const bool usual = std::find(std::begin(analysis::kWindowNumbers), std::end(analysis::kWindowNumbers),
-                                 r.name) != std::end(analysis::kWindowNumbers);
-    if (r.shape.empty() && r.name != "phase" && (only.empty() ? usual : true)) names.push_back(r.name);
+                                 name) != std::end(analysis::kWindowNumbers);
+    if (name != "phase" && (only.empty() ? usual : true)) names.push_back(name);
   }
   const bool phase = analysis::seek_result(windows.front().results, "phase") != nullptr;
   std::string text = fmt::format("{:<13} {:<17} {:<17}", "cycles", "Gamma (g = 1)", "omega, 1/t0");
@@ -149,13 +149,17 @@ void run_windows(const Common& common, const AnalyzeOptions& options) {
            "is the results of a whole run; with --window-cycles, use --table FILE.csv or --json.");
   const H5mdReader trajectory(options.trajectories.front());
   std::vector<analysis::Window> windows;
+  std::vector<analysis::CycleRange> left_out;
   {
     ProgressBar progress(common, "analyze");
-    windows = analysis::analyze_windows(trajectory, options.analysis, options.window, progress);
+    windows = analysis::analyze_windows(trajectory, options.analysis, options.window, progress, &left_out);
   }
   Provenance provenance = common.provenance();
   provenance.inputs.assign(options.trajectories.begin(), options.trajectories.end());
   std::string text = as_text(windows, options.analysis.only);
+  for (const auto& [first, last] : left_out)
+    text += first == last ? fmt::format("cycle {} fills no window and is left out\n", first)
+                          : fmt::format("cycles {} to {} fill no window and are left out\n", first, last);
   if (!options.table.empty()) {
     write_text_file(options.table, analysis::windows_csv(windows), window_table());
     text += options.table + "\n";
@@ -165,7 +169,9 @@ void run_windows(const Common& common, const AnalyzeOptions& options) {
     text += options.figures + "\n";
   }
   print_result(common,
-               {{"windows", as_json(windows)}, {"provenance", nlohmann::json::parse(provenance.to_json())}},
+               {{"windows", as_json(windows)},
+                {"left_out_cycles", left_out},
+                {"provenance", nlohmann::json::parse(provenance.to_json())}},
                text);
 }
 

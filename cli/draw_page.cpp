@@ -14,6 +14,7 @@
 #include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/escape.hpp"
+#include "imaging/camera/movie.hpp"
 
 namespace twincell::cli {
 
@@ -208,6 +209,7 @@ DrawnPage page_of(const TrajectorySource& source, const imaging::DrawJob& job, c
   const TrajectoryInfo& info = source.info();
   const std::vector<std::size_t> indices = imaging::indices_of(source, job.frames);
   check(source, job, indices.size());
+  imaging::require_frame_rate(job.frames_per_second);
   const bool solid = info.box.dimension == 3;
   const Vec3 nowhere = Vec3::Constant(std::nan(""));
   VectorLevels positions(solid), velocities(solid);

@@ -25,6 +25,20 @@ struct ImportOptions {
   ForeignOptions foreign;
 };
 
+/// Notes on units and sizes that no file of beads is likely to have.
+void note_doubts(const Common& common, const ForeignTrajectory& source, double sigma) {
+  constexpr double kClosest = 0.5, kFarthest = 3;  // sigma
+  if (const double d = source.spacing(); source.info().n_beads > 1 && (d < kClosest || d > kFarthest))
+    note(common, fmt::format("the nearest neighbours in the first frame are {:.3g} bead diameters apart; the "
+                             "bead diameter is {:g} in the unit of the file (--sigma).",
+                             d, sigma));
+  if (source.n_beyond() > 0)
+    note(common, fmt::format("{} of the first frame lie beyond the side walls of the cell, which is {:.4g} "
+                             "bead diameters wide (--cell-origin, --cell-width).",
+                             counted(source.n_beyond(), "bead"), source.info().box.upper.x()));
+  if (source.replaces_times()) note(common, "the times of the file are replaced by those of --timestep.");
+}
+
 void run(ImportOptions& o, const Common& common) {
   if (is_trajectory(o.file))
     throw ConfigError({o.file, 0, 0, ""},
@@ -56,6 +70,7 @@ void run(ImportOptions& o, const Common& common) {
   writer.finish();
   if (info.box.dimension == 3 && source.is_flat())
     note(common, "all beads are in one plane in every frame; for a two-dimensional system: --dimension 2.");
+  note_doubts(common, source, o.foreign.sigma);
   if (!info.drive) note(common, "no drive was given: the phases and the height of the plate are absent.");
   print_result(
       common,

@@ -155,6 +155,7 @@ void run(LocateOptions& o, const Common& common) {
   imaging::check_flat(o.locating.flat, locator.preprocess.bright);
 
   located_frames.commit();
+  if (!o.truth.empty()) imaging::require_scored(located_frames.score(), o.truth);
   if (view) write_text_file(o.view, view->page(o.stack, o.output, n), locate_page());
 
   const std::int64_t settings_frame = range.number(settings_index);

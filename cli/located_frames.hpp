@@ -63,6 +63,8 @@ class LocatedFrames {
   /// Warnings: frames without beads, and candidates that were left out if they are many. Empty if there is no
   /// reason for doubt.
   [[nodiscard]] std::string doubts() const;
+  /// The score; of nothing without a truth.
+  [[nodiscard]] imaging::Score score() const { return scorer_.score(); }
   /// The score in a sentence; empty without a truth.
   [[nodiscard]] std::string score_text() const;
   /// Members "frames", "left_out" and, with a truth, "truth".

@@ -196,9 +196,13 @@ std::string with_advice(const std::string& complaint, int argc, char** argv) {
 }
 
 /// The complaint with the dashes of the option that it begins with: the libraries name an option by its key.
-std::string with_dashes(const CLI::App& program, const std::string& complaint) {
+/// A word of the command line is a file, whose name may be that of an option, such as the folder "frames".
+std::string with_dashes(const CLI::App& program, const std::string& complaint, int argc, char** argv) {
   const std::string key = complaint.substr(0, complaint.find(": "));
-  const bool is_option = !key.empty() && key.size() < complaint.size() &&
+  const bool is_file = std::any_of(argv + 1, argv + argc, [&](const std::string& word) {
+    return word == key || word.ends_with("=" + key);
+  });
+  const bool is_option = !key.empty() && key.size() < complaint.size() && !is_file &&
                          selected(program).get_option_no_throw("--" + key) != nullptr;
   return is_option ? "--" + complaint : complaint;
 }
@@ -245,7 +249,7 @@ int run(int argc, char** argv) {
     program.exit(wanted);
     return finish_output();
   } catch (const Error& e) {
-    return complain(with_advice(with_dashes(program, e.what()), argc, argv), e.exit_code());
+    return complain(with_advice(with_dashes(program, e.what(), argc, argv), argc, argv), e.exit_code());
   } catch (const CLI::ParseError& e) {
     // An option that is misspelled is the cause, also where CLI11 misses the right one first.
     if (const std::string complaint = unknown_option(program, argc, argv); !complaint.empty())

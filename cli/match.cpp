@@ -93,7 +93,8 @@ twin::TwinOptions configure_twin(const MatchOptions& o, twin::TwinOptions option
   for (const std::string& doubt : imaging::implausible_numbers(imaging::shaken_cell(cell)))
     note(common, doubt);
   options.phases = imaging::phase_source(o.phase, cell, options.cell_file.string());
-  options.phase_lock = imaging::lock_of_chosen(cell.phase_lock, imaging::frames_of(o.locating));
+  options.frames = imaging::frames_of(o.locating);
+  options.phase_lock = imaging::lock_of_chosen(cell.phase_lock, options.frames);
   options.locator = imaging::locator_of(o.locating, cell.pixels_per_sigma, cell.bright);
   options.region = imaging::region_of(o.locating);
   options.open_stack = [&o, &common, stack = options.stack.string(), locator = options.locator] {

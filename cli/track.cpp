@@ -57,11 +57,15 @@ void write_csv(const std::string& path, const imaging::TrackedStack& stack,
   file.commit();
 }
 
+imaging::Scorer scorer_of(const TrackOptions& o) {
+  return imaging::Scorer(o.scored_rows.size() == 2 ? imaging::ScoredRows{o.scored_rows[0], o.scored_rows[1]}
+                                                   : imaging::ScoredRows{});
+}
+
 imaging::Score score_against(const TrackOptions& o, const imaging::TrackedStack& stack,
                              const imaging::FrameRange& range) {
   const auto truth = imaging::read_truth(o.truth);
-  imaging::Scorer scorer(o.scored_rows.size() == 2 ? imaging::ScoredRows{o.scored_rows[0], o.scored_rows[1]}
-                                                   : imaging::ScoredRows{});
+  imaging::Scorer scorer = scorer_of(o);
   for (std::size_t f = 0; f < stack.frames.size(); ++f) {
     const auto number = static_cast<std::size_t>(range.number(static_cast<std::int64_t>(f)));
     if (number >= truth.size()) break;
@@ -69,7 +73,9 @@ imaging::Score score_against(const TrackOptions& o, const imaging::TrackedStack&
     for (const imaging::TrackedBead& b : stack.frames[f]) found.push_back({b.x_px, b.y_px, b.track});
     scorer.add(truth[number], found);
   }
-  return scorer.score();
+  const imaging::Score score = scorer.score();
+  imaging::require_scored(score, o.truth);
+  return score;
 }
 
 // The printed summary of the phases, the links and the tracers.
@@ -105,6 +111,7 @@ std::string describe(const imaging::TrackedStack& stack) {
 
 void run(TrackOptions& o, const Common& common) {
   Profile profile(o.profile);
+  (void)scorer_of(o);  // refuse rows in the wrong order before the work
   const std::filesystem::path parent = std::filesystem::path(o.output).parent_path();
   o.film.folder = parent.empty() ? "." : parent;
   o.film.threads = common.n_threads();
@@ -216,7 +223,7 @@ void add_track(CLI::App& program, Common& common) {
       ->check(above_zero());
   verb.add_option("--origin-px", o->film.request.origin,
                   "Lower left inside corner of the cell, with the plate at its mean height: x y, px")
-      ->expected(2);
+      ->type_name("FLOAT x 2");
   verb.add_option("--set", o->film.request.assignments,
                   "Set a key of CELL.toml, as section.key=value (cell.width_mm=40); overrides the file; may "
                   "be repeated")

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include "core/error.hpp"
@@ -25,6 +26,35 @@ std::string short_name(const fs::path& stack) {
   return fs::is_directory(file) ? file.filename().string() : file.stem().string();
 }
 
+/// The name of the folder or file, with the dataset in it: "f.avi", "f.h5-day-2".
+std::string full_name(const fs::path& stack) {
+  std::string name = bare(stack).filename().string();
+  std::string inside = stack.string().substr(imaging::file_of_stack(stack).string().size());
+  if (inside.starts_with(':')) {
+    std::replace(inside.begin(), inside.end(), '/', '-');
+    name += inside[1] == '-' ? inside.substr(1) : "-" + inside.substr(1);
+  }
+  return name;
+}
+
+/// \throws ConfigError if two of the stacks are the same
+void refuse_repeated(const std::vector<fs::path>& stacks) {
+  const auto place = [](const fs::path& stack) {
+    std::error_code ec;
+    const fs::path file = imaging::file_of_stack(stack);
+    const fs::path real = fs::canonical(file, ec);
+    return (ec ? bare(stack) : real).string() + stack.string().substr(file.string().size());
+  };
+  std::map<std::string, fs::path> seen;
+  for (const fs::path& stack : stacks)
+    if (const auto [before, is_new] = seen.emplace(place(stack), stack); !is_new)
+      throw ConfigError({.file = stack.string()},
+                        fmt::format("is the same stack as {}; name it only once.", before->second.string()));
+}
+
+/// Of `match`, the folder of the comparison beside those of the stacks.
+constexpr const char* kTaken = "report";
+
 /// Whether a folder contains cell files, but is not a stack with its own CELL.toml.
 bool is_folder_of_cells(const fs::path& folder) {
   std::error_code ec;
@@ -36,19 +66,28 @@ bool is_folder_of_cells(const fs::path& folder) {
 }  // namespace
 
 std::vector<std::string> names_of_stacks(const std::vector<fs::path>& stacks) {
+  refuse_repeated(stacks);
   std::vector<std::string> names;
   for (const fs::path& stack : stacks) names.push_back(short_name(stack));
-  const auto shared = [&] {
-    std::map<std::string, int> count;
+  const auto rename = [&](auto longer) {
+    std::map<std::string, int> count{{kTaken, 1}};
     for (const std::string& name : names) ++count[name];
-    return count;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (count[names[i]] > 1) names[i] = longer(stacks[i], names[i]);
   };
-  auto count = shared();
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (count[names[i]] > 1) names[i] = bare(stacks[i]).parent_path().filename().string() + "-" + names[i];
-  count = shared();
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (count[names[i]] > 1) names[i] += fmt::format("-{}", i + 1);
+  // None of these names depends on the order of the stacks, in which `new` and `match` may differ.
+  rename([](const fs::path& stack, const std::string&) { return full_name(stack); });
+  std::ptrdiff_t most = 0;
+  for (const fs::path& stack : stacks) {
+    const fs::path file = bare(stack);
+    most = std::max(most, std::distance(file.begin(), file.end()));
+  }
+  for (std::ptrdiff_t level = 1; level < most; ++level)
+    rename([&](const fs::path& stack, const std::string& name) {
+      fs::path folder = bare(stack);
+      for (std::ptrdiff_t up = 0; up < level; ++up) folder = folder.parent_path();
+      return folder.has_filename() ? folder.filename().string() + "-" + name : name;
+    });
   return names;
 }
 

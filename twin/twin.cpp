@@ -119,7 +119,7 @@ FilmedCell read_filmed_cell(const TwinOptions& options, const ProgressOf& progre
   if (calibration::lacks_drive(filmed.cell, locked)) {
     const auto bar = progress("the plate's edge");
     filmed.drive = calibration::complete_drive(filmed.cell, locked, options.cell_file, options.stack,
-                                               options.threads, *bar);
+                                               options.frames, options.threads, *bar);
   }
   return filmed;
 }
@@ -152,7 +152,7 @@ calibration::DriveCheck check_plate(const FilmedCell& filmed, const TwinOptions&
   if (!checks_drive(filmed, options)) return {.not_comparable = "the stated drive is trusted"};
   const auto bar = progress("the plate's edge");
   calibration::DriveCheck check =
-      calibration::check_by_plate(filmed.cell, options.stack, options.threads, *bar,
+      calibration::check_by_plate(filmed.cell, options.stack, options.frames, options.threads, *bar,
                                   options.phases.method == imaging::PhaseMethod::fixed);
   require_agreement(check, options);
   return check;

@@ -16,6 +16,7 @@
 #include "imaging/link/link.hpp"
 #include "imaging/locate/locator.hpp"
 #include "imaging/preprocess/region.hpp"
+#include "imaging/stack/chosen_frames.hpp"
 #include "imaging/stack/frame_source.hpp"
 #include "imaging/track/link_detections.hpp"
 #include "sim/scene/scene.hpp"
@@ -33,7 +34,8 @@ struct TwinOptions {
   int twins = 3;
   imaging::LocatorOptions locator;  ///< complete but for what configure_locator finds
   imaging::Region region;           ///< part of the picture that is searched
-  /// Opens the stack to be tracked; empty: the whole stack, as it is.
+  imaging::FrameRange frames;       ///< the frames of the stack that are tracked
+  /// Opens the stack to be tracked, with its chosen frames; empty: the whole stack, as it is.
   std::function<std::unique_ptr<imaging::FrameSource>()> open_stack;
   imaging::LinkOptions link;
   int threads = 1;

@@ -38,25 +38,52 @@ struct Place {
   double fraction;         ///< phase of its first frame
 };
 
-std::vector<Place> places_of(const TrajectorySource& trajectory, std::int64_t discard, std::int64_t cycles) {
+double fraction_of(const TrajectoryInfo& info, const Frame& frame) {
+  return static_cast<double>(std::max(0, frame.phase)) / std::max(1, info.phases_per_cycle);
+}
+
+/// Number of the cycle in which a ramp that returns begins to do so, as `frame` counts its cycles.
+std::optional<std::int64_t> turn_of(const TrajectoryInfo& info, const Frame& frame) {
+  if (!info.drive || !info.drive->ramp || !info.drive->ramp->returns) return {};
+  const DriveRamp& ramp = *info.drive->ramp;
+  const double before = info.drive->cycles_at(frame.time) - fraction_of(info, frame);
+  return frame.cycle + std::llround(ramp.first + ramp.cycles / 2 - before);
+}
+
+/// Windows from the first cycle after `discard` ones, and again from the turn of the drive, so that none
+/// contains both directions. Those that end beyond the turn or the last frame go to `left_out`.
+std::vector<Place> places_of(const TrajectorySource& trajectory, std::int64_t discard, std::int64_t cycles,
+                             std::vector<CycleRange>& left_out) {
   std::vector<Place> places;
   Frame frame;
   std::int64_t first = -1, last = -1;
+  std::optional<std::int64_t> turn;
+  const auto leave_out_beyond = [&](std::int64_t end) {
+    if (places.empty() || places.back().first_cycle + cycles <= end) return;
+    left_out.push_back({places.back().first_cycle, end - 1});
+    places.pop_back();
+  };
   for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
     throw_if_cancelled();
     trajectory.read(f, frame);
     if (frame.cycle < 0) continue;
-    if (first < 0) first = frame.cycle + discard;
-    if (frame.cycle < first) continue;
-    const std::int64_t start = first + (frame.cycle - first) / cycles * cycles;
-    if (places.empty() || places.back().first_cycle != start) {
-      const int phases = std::max(1, trajectory.info().phases_per_cycle);
-      places.push_back({start, f, f, frame.time, static_cast<double>(std::max(0, frame.phase)) / phases});
+    if (first < 0) {
+      first = frame.cycle + discard;
+      turn = turn_of(trajectory.info(), frame);
     }
+    if (frame.cycle < first) continue;
+    if (turn && frame.cycle >= *turn) {
+      leave_out_beyond(*turn);
+      first = std::max(first, *turn);
+      turn.reset();
+    }
+    const std::int64_t start = first + (frame.cycle - first) / cycles * cycles;
+    if (places.empty() || places.back().first_cycle != start)
+      places.push_back({start, f, f, frame.time, fraction_of(trajectory.info(), frame)});
     places.back().end = f + 1;
     last = frame.cycle;
   }
-  if (!places.empty() && last + 1 < places.back().first_cycle + cycles) places.pop_back();
+  leave_out_beyond(last + 1);
   return places;
 }
 
@@ -74,7 +101,8 @@ std::string number(double value) {
 }  // namespace
 
 std::vector<Window> analyze_windows(const TrajectorySource& trajectory, const AnalysisOptions& options,
-                                    std::int64_t cycles, Progress& progress) {
+                                    std::int64_t cycles, Progress& progress,
+                                    std::vector<CycleRange>* left_out) {
   const Where where{.file = trajectory.name(), .key = "window_cycles"};
   if (cycles < 1) throw ConfigError(where, fmt::format("a window of {} cycles is empty; at least 1", cycles));
   if (options.cycles > 0)
@@ -83,7 +111,9 @@ std::vector<Window> analyze_windows(const TrajectorySource& trajectory, const An
     throw InputError({.file = trajectory.name(), .key = {}}, "the trajectory contains no frame");
   if (!trajectory.info().columns.phase)
     throw ConfigError(where, "the frames of the trajectory have no cycle number");
-  const std::vector<Place> places = places_of(trajectory, options.discard_cycles, cycles);
+  std::vector<CycleRange> no_window;
+  const std::vector<Place> places = places_of(trajectory, options.discard_cycles, cycles, no_window);
+  if (left_out != nullptr) *left_out = no_window;
   if (places.empty())
     throw ConfigError(where, fmt::format("no {} cycles of the trajectory fill a window", cycles));
   AnalysisOptions one = options;
@@ -104,18 +134,30 @@ std::vector<Window> analyze_windows(const TrajectorySource& trajectory, const An
   return windows;
 }
 
-std::string windows_csv(const std::vector<Window>& windows) {
-  std::string text = "first_cycle,cycles,gamma_begin,gamma_end,omega_begin,omega_end";
+std::vector<std::string> names_of_numbers(const std::vector<Window>& windows) {
   std::vector<std::string> names;
   for (const Result& r : windows.front().results)
-    if (r.shape.empty()) names.push_back(r.name);
+    if (std::all_of(windows.begin(), windows.end(),
+                    [&](const Window& w) { return find_result(w.results, r.name).shape.empty(); }))
+      names.push_back(r.name);
+  return names;
+}
+
+std::string windows_csv(const std::vector<Window>& windows) {
+  std::string text = "first_cycle,cycles,gamma_begin,gamma_end,omega_begin,omega_end";
+  const std::vector<std::string> names = names_of_numbers(windows);
+  const auto is_present = [&](const std::string& name) {
+    return std::any_of(windows.begin(), windows.end(),
+                       [&](const Window& w) { return find_result(w.results, name).present(); });
+  };
   const auto is_word = [&](const std::string& name) {
     return std::any_of(windows.begin(), windows.end(),
                        [&](const Window& w) { return !find_result(w.results, name).text.empty(); });
   };
   for (const std::string& name : names) {
     fmt::format_to(std::back_inserter(text), ",{0}", name);
-    if (!is_word(name)) fmt::format_to(std::back_inserter(text), ",{0}_low,{0}_high", name);
+    if (is_present(name) && !is_word(name))
+      fmt::format_to(std::back_inserter(text), ",{0}_low,{0}_high", name);
   }
   text += '\n';
   for (const Window& w : windows) {
@@ -127,6 +169,10 @@ std::string windows_csv(const std::vector<Window>& windows) {
       text += ",,,,";
     for (const std::string& name : names) {
       const Result& r = find_result(w.results, name);
+      if (!is_present(name)) {
+        text += ',';
+        continue;
+      }
       if (is_word(name)) {
         fmt::format_to(std::back_inserter(text), ",{}", csv_field(r.text));
         continue;

@@ -345,12 +345,14 @@ double diameter_for_edges(const std::filesystem::path& stack, bool bright, doubl
 }
 
 std::optional<double> frame_rate_of(std::optional<double> stated, const StackEdges& edges,
-                                    const std::filesystem::path& stack) {
-  if (stated) return stated;
+                                    const std::filesystem::path& stack, const imaging::FrameRange& range) {
+  const auto step = static_cast<double>(range.step);
+  if (stated) return *stated / step;
   const auto& t = edges.time_s;
   if (t.size() > 1 && t.back() > t.front()) return static_cast<double>(t.size() - 1) / (t.back() - t.front());
   const imaging::StackInfo info = imaging::open_frames(stack)->info();
-  return info.playback ? std::nullopt : info.frame_rate_hz;
+  if (info.playback || !info.frame_rate_hz) return {};
+  return *info.frame_rate_hz / step;
 }
 
 StackEdges read_stack_edges(imaging::FrameSource& frames, bool bright, double diameter_px, int threads,

@@ -17,6 +17,7 @@
 #include "calibration/fit/fit.hpp"
 #include "core/progress.hpp"
 #include "imaging/cell/cell_edges.hpp"
+#include "imaging/stack/chosen_frames.hpp"
 #include "imaging/stack/frame_source.hpp"
 
 namespace twincell::calibration {
@@ -45,8 +46,10 @@ struct StackEdges {
 double diameter_for_edges(const std::filesystem::path& stack, bool bright, double known_px);
 /// Frames per second: as the user states them, else from the camera's time stamps, else from the stack's
 /// metadata. The playback rate of a video does not count. Empty if no source gives a frame rate.
+/// \param range the frames of the stack that `edges` are of; the rate is that of these frames
 std::optional<double> frame_rate_of(std::optional<double> stated, const StackEdges& edges,
-                                    const std::filesystem::path& stack);
+                                    const std::filesystem::path& stack,
+                                    const imaging::FrameRange& range = {});
 /// Finds the edges in every frame; reads the stack once. \throws InputError as FrameSource
 StackEdges read_stack_edges(imaging::FrameSource& frames, bool bright, double diameter_px, int threads,
                             Progress& progress = Progress::none());

@@ -60,11 +60,11 @@ bool lacks_drive(const imaging::CellDescription& cell, bool phases) {
 
 std::string complete_drive(imaging::CellDescription& cell, bool phases,
                            const std::filesystem::path& cell_file, const std::filesystem::path& stack,
-                           int threads, Progress& progress) {
+                           const imaging::FrameRange& range, int threads, Progress& progress) {
   const auto where = [&](const char* key) { return Where{.file = cell_file.string(), .key = key}; };
   const double diameter = diameter_for_edges(stack, cell.bright, cell.pixels_per_sigma.value_or(0));
-  const StackEdges edges =
-      read_stack_edges(*imaging::open_frames(stack), cell.bright, diameter, threads, progress);
+  const StackEdges edges = read_stack_edges(*imaging::chosen_frames(imaging::open_frames(stack), range),
+                                            cell.bright, diameter, threads, progress);
   const auto seen = [&] {
     try {
       return plate_in_picture(cell, edges);
@@ -83,7 +83,7 @@ std::string complete_drive(imaging::CellDescription& cell, bool phases,
       said += fmt::format(" A = {:.5g} +- {:.2g} sigma", *spec.amplitude, lock.amplitude_error / scale);
     }
     if (!states_more_than_amplitude(spec)) {
-      const auto rate = frame_rate_of(cell.frame_rate_hz, edges, stack);
+      const auto rate = frame_rate_of(cell.frame_rate_hz, edges, stack, range);
       const auto t0 = cell.scale.t0_s();
       if (!rate || !t0)
         throw ConfigError(
@@ -111,11 +111,11 @@ std::string complete_drive(imaging::CellDescription& cell, bool phases,
 
 namespace {
 
-/// The first frames of a stack, at most `most`.
+/// The first of the chosen frames of a stack, at most `most`.
 class FirstFrames : public imaging::FrameSource {
  public:
-  FirstFrames(const std::filesystem::path& stack, std::size_t most)
-      : all_(imaging::open_frames(stack)), most_(most), left_(most) {}
+  FirstFrames(const std::filesystem::path& stack, const imaging::FrameRange& range, std::size_t most)
+      : all_(imaging::chosen_frames(imaging::open_frames(stack), range)), most_(most), left_(most) {}
   bool next(cv::Mat& frame) override {
     if (left_ == 0) return false;
     --left_;
@@ -166,15 +166,17 @@ void compare_period(DriveCheck& check, const std::string& what, const DriveFit& 
 
 /// The stated frame rate and frames per cycle give a frequency by themselves, whatever the frames show. The
 /// playback rate of a video is not the camera's, so only a stated rate counts.
-void compare_frame_rate(DriveCheck& check, const imaging::CellDescription& cell, double stated) {
+void compare_frame_rate(DriveCheck& check, const imaging::CellDescription& cell,
+                        const imaging::FrameRange& range, double stated) {
   const auto t0 = cell.scale.t0_s();
   if (!cell.frame_rate_hz || !t0 || !cell.phase_lock.locked() || !check.disagreement.empty()) return;
-  const double omega = 2 * M_PI * *cell.frame_rate_hz * *t0 / cell.phase_lock.frames_per_cycle;
+  const std::int64_t per_cycle = cell.phase_lock.frames_per_cycle * range.step;  // of the whole stack
+  const double omega = 2 * M_PI * *cell.frame_rate_hz * *t0 / static_cast<double>(per_cycle);
   if (std::abs(omega - stated) > kShare * stated)
     check.disagreement = fmt::format(
         "{:g} frames per second and {} frames per cycle give omega = {:.4g} per t0, but the cell states "
         "{:.4g}",
-        *cell.frame_rate_hz, cell.phase_lock.frames_per_cycle, omega, stated);
+        *cell.frame_rate_hz, per_cycle, omega, stated);
 }
 
 /// Motion of the plate. A fit that begins at a wrong number of frames per cycle fails or ends beside the true
@@ -201,9 +203,18 @@ DriveFit motion_of_plate(const imaging::CellDescription& cell, const StackEdges&
              : *as_stated;
 }
 
-/// The cell file of another stack: an edge follows a sine as cleanly as only a plate does, but neither where
-/// the cell states the plate nor with the stated amplitude. A bed whose plate is out of the picture follows
-/// no clean sine while it flies, and has the amplitude of the plate while it lies on it.
+/// Whether the stated position of the plate is in the picture, and further from the seen one than a rotation
+/// of the camera explains. A bed that lies on a plate out of the picture moves as that plate does.
+bool is_misplaced(const imaging::CellDescription& cell, const CellGeometry& geometry, double row) {
+  constexpr double kFarthest = 2;  // bead diameters
+  const double stated = cell.origin->y_px, turned = std::abs(std::sin(geometry.rotation_deg * M_PI / 180));
+  return stated < geometry.size.height &&
+         std::abs(row - stated) > kFarthest * *cell.pixels_per_sigma + turned * geometry.size.width;
+}
+
+/// The cell file of another stack, or a wrong origin: an edge follows a sine as cleanly as only a plate does,
+/// but not where the cell states the plate. A bed whose plate is out of the picture follows no clean sine
+/// while it flies, and has the amplitude of the plate while it lies on it.
 void look_for_plate_elsewhere(DriveCheck& check, const imaging::CellDescription& cell,
                               const StackEdges& edges, double stated) {
   constexpr double kClean = 0.02, kSeen = 0.95, kLeast_px = 1;  // of the amplitude; of the frames
@@ -216,18 +227,24 @@ void look_for_plate_elsewhere(DriveCheck& check, const imaging::CellDescription&
     if (seen.amplitude < kLeast_px || seen.rms > kClean * seen.amplitude ||
         static_cast<double>(seen.locked) < kSeen * static_cast<double>(geometry.heights.size()))
       return;
-    const double scale = *cell.pixels_per_sigma;
+    const double scale = *cell.pixels_per_sigma, row = geometry.plate_row - seen.z0;
     DriveCheck found;
     found.amplitude = seen.amplitude / scale;
     found.amplitude_error = seen.amplitude_error / scale;
     compare_amplitude(
         found,
-        fmt::format("the plate in the frames, at row {:.1f} where camera.origin_px states {:.1f},",
-                    geometry.plate_row - seen.z0, cell.origin->y_px),
+        fmt::format("the plate in the frames, at row {:.1f} where camera.origin_px states {:.1f},", row,
+                    cell.origin->y_px),
         stated, kShare, scale);
     check.plate_elsewhere = found.disagreement;
     check.amplitude = found.amplitude;
     check.amplitude_error = found.amplitude_error;
+    if (!found.disagreement.empty() || !is_misplaced(cell, geometry, row)) return;
+    check.by = "plate";
+    check.not_comparable.clear();
+    check.disagreement =
+        fmt::format("the plate in the frames is at row {:.1f}, but camera.origin_px states row {:.1f}", row,
+                    cell.origin->y_px);
   } catch (const InputError&) {  // no edge moves as a plate does
   }
 }
@@ -246,7 +263,8 @@ void record(const DriveCheck& check, TrajectoryInfo& info) {
 }
 
 DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::filesystem::path& stack,
-                          int threads, Progress& progress, bool fixed_phases) {
+                          const imaging::FrameRange& range, int threads, Progress& progress,
+                          bool fixed_phases) {
   DriveCheck check;
   const auto drive = cell.drive();
   if (!drive || !cell.pixels_per_sigma) {
@@ -258,10 +276,10 @@ DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::files
   // beads.
   constexpr std::size_t kCycles = 3, kFewest = 40;
   FirstFrames beginning(
-      stack, std::max(kFewest, kCycles * static_cast<std::size_t>(cell.phase_lock.frames_per_cycle)));
+      stack, range, std::max(kFewest, kCycles * static_cast<std::size_t>(cell.phase_lock.frames_per_cycle)));
   const StackEdges edges = read_stack_edges(beginning, cell.bright,
                                             diameter_for_edges(stack, cell.bright, scale), threads, progress);
-  check.frame_rate_hz = frame_rate_of(cell.frame_rate_hz, edges, stack);
+  check.frame_rate_hz = frame_rate_of(cell.frame_rate_hz, edges, stack, range);
   try {
     const DriveFit seen = motion_of_plate(cell, edges);
     check.by = "plate";
@@ -275,7 +293,7 @@ DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::files
     check.not_comparable = e.what();
     look_for_plate_elsewhere(check, cell, edges, drive->amplitude);
   }
-  if (fixed_phases) compare_frame_rate(check, cell, drive->omega);
+  if (fixed_phases) compare_frame_rate(check, cell, range, drive->omega);
   return check;
 }
 

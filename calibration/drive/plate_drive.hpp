@@ -10,6 +10,7 @@
 #include "calibration/drive/bed_drive.hpp"
 #include "core/progress.hpp"
 #include "imaging/cell/cell.hpp"
+#include "imaging/stack/chosen_frames.hpp"
 
 namespace twincell::calibration {
 
@@ -21,12 +22,13 @@ bool lacks_drive(const imaging::CellDescription& cell, bool phases = true);
 /// comes from the plate's amplitude and the scale. omega comes from the frame rate and t0, unless the cell
 /// states omega, a frequency or a strength that gives it. Frames per cycle, first phase and offset come from
 /// the fit if `phases` are wanted. Values that the cell states are kept.
+/// \param range the frames of the stack that are read, and to which the phases of the cell refer
 /// \return the measured values as one sentence
 /// \throws ConfigError naming the key that is still missing and why it could not be measured; InputError if
 /// no moving plate is detected
 std::string complete_drive(imaging::CellDescription& cell, bool phases,
                            const std::filesystem::path& cell_file, const std::filesystem::path& stack,
-                           int threads, Progress& progress);
+                           const imaging::FrameRange& range, int threads, Progress& progress);
 
 /// Result of comparing the stated drive with the film.
 struct DriveCheck {
@@ -45,13 +47,16 @@ void record(const DriveCheck& check, TrajectoryInfo& info);
 
 /// Compares the stated drive with the plate's edge in the first three cycles, at least 40 frames: the
 /// amplitude, the period in frames, and omega if frame rate and scale are known. A difference counts if it
-/// exceeds five standard errors, 3 % and 0.3 px (period and omega: five standard errors and 3 %). \param
-/// fixed_phases whether the phases of the frames follow from the stated frames per cycle; otherwise the
-/// period is not compared. Also compares omega with the stated frame rate divided by the stated frames per
-/// cycle, with or without a plate in the picture \pre the cell states drive and scale, otherwise nothing is
+/// exceeds five standard errors, 3 % and 0.3 px (period and omega: five standard errors and 3 %).
+/// \param range the frames of the stack that are read, and to which the phases of the cell refer
+/// \param fixed_phases whether the phases of the frames follow from the stated frames per cycle; otherwise
+/// the period is not compared. Also compares omega with the stated frame rate divided by the stated frames
+/// per cycle, with or without a plate in the picture. A plate that is more than two bead diameters from
+/// camera.origin_px is a difference too. \pre the cell states drive and scale, otherwise nothing is
 /// compared
 DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::filesystem::path& stack,
-                          int threads, Progress& progress, bool fixed_phases = true);
+                          const imaging::FrameRange& range, int threads, Progress& progress,
+                          bool fixed_phases = true);
 
 /// Compares the stated drive with the lower surface of the bed while the bed rests on the plate
 /// (bed_drive.hpp), for films that do not show the plate. A difference of amplitude counts if it exceeds five

@@ -13,7 +13,8 @@ TrackedFilm track_film(
   imaging::PhaseSource source = imaging::phase_source(request.phase, cell, request.cell_file);
   source.trusted = options.trust_stated_drive;
   (void)cell.drive();  // refuse a contradictory drive before the work starts
-  cell.phase_lock = imaging::lock_of_chosen(cell.phase_lock, imaging::frames_of(options.locating));
+  const imaging::FrameRange range = imaging::frames_of(options.locating);
+  cell.phase_lock = imaging::lock_of_chosen(cell.phase_lock, range);
   const imaging::LocatorOptions locator =
       imaging::locator_of(options.locating, cell.pixels_per_sigma,
                           request.cell_file.empty() ? std::nullopt : std::optional<bool>(cell.bright));
@@ -36,8 +37,8 @@ TrackedFilm track_film(
     const Stage checking(times, "drive check");
     if (!film.empty()) {
       const auto edge = progress("the plate's edge");
-      check =
-          check_by_plate(cell, film, options.threads, *edge, source.method == imaging::PhaseMethod::fixed);
+      check = check_by_plate(cell, film, range, options.threads, *edge,
+                             source.method == imaging::PhaseMethod::fixed);
     }
     if (check.by.empty() && check.disagreement.empty() && cell.pixels_per_sigma) {
       BedSteps bed(plan.info);

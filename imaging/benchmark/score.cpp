@@ -101,6 +101,19 @@ TruthBead bead(const Table& t) {
 
 }  // namespace
 
+Scorer::Scorer(ScoredRows rows) : rows_(rows) {
+  if (rows.first > rows.last)
+    throw ConfigError(Where{.file = {}, .key = "scored-rows"},
+                      fmt::format("begin with {:g} and end with {:g}; the first must not exceed the last.",
+                                  rows.first, rows.last));
+}
+
+void require_scored(const Score& score, const fs::path& truth) {
+  if (score.truths == 0)
+    throw InputError(Where{.file = truth.string(), .key = {}},
+                     "has no bead in the frames and rows that are scored, so there is no score.");
+}
+
 void Scorer::add(const std::vector<TruthBead>& truth, const std::vector<FoundBead>& found) {
   struct Pair {
     double distance;

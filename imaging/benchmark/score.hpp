@@ -52,7 +52,8 @@ struct Score {
 /// closest pair first, within one radius.
 class Scorer {
  public:
-  explicit Scorer(ScoredRows rows = {}) : rows_(rows) {}
+  /// \throws ConfigError if the first row lies below the last
+  explicit Scorer(ScoredRows rows = {});
   void add(const std::vector<TruthBead>& truth, const std::vector<FoundBead>& found);
   [[nodiscard]] Score score() const;
 
@@ -66,6 +67,9 @@ class Scorer {
   double least_u_ = HUGE_VAL, squares_sure_ = 0;
   std::vector<Link> previous_;
 };
+
+/// \throws InputError naming the file of the truth if no bead of it was scored: a score of nothing is perfect
+void require_scored(const Score& score, const std::filesystem::path& truth);
 
 /// Reads the truth of a stack: a file truth.csv, or a folder that contains truth.csv or one truth_NN.csv per
 /// frame (natural order). In a file without a column `frame`, all rows belong to frame 0. Columns by name:

@@ -32,10 +32,14 @@ void sign(const std::filesystem::path& film) {
 
 }  // namespace
 
+void require_frame_rate(double frames_per_second) {
+  require_range(Where{.file = {}, .key = "fps"}, frames_per_second, 0.01, 1000);
+}
+
 Movie::Movie(const std::filesystem::path& file, cv::Size size, double rate)
     : place_(file, Product::film()), size_((size.width + 1) / 2 * 2, (size.height + 1) / 2 * 2) {
   quiet_opencv();
-  require_range(Where{.file = {}, .key = "fps"}, rate, 0.01, 1000);
+  require_frame_rate(rate);
   const std::string kind = file.extension().string();
   if (kind != ".mp4" && kind != ".avi")
     throw ConfigError(Where{.file = {}, .key = "movie"},

@@ -12,6 +12,9 @@ namespace twincell::imaging {
 
 class FilmWriter;
 
+/// \throws ConfigError for a rate of a film outside 0.01 .. 1000, 1/s
+void require_frame_rate(double frames_per_second);
+
 /// Writes .mp4 (H.264, or MPEG-4 if this build of OpenCV has no H.264) or .avi (Motion JPEG), 8-bit grey or
 /// BGR. An odd width or height is made even by repeating the last column or row. The file appears at
 /// commit().

@@ -34,9 +34,11 @@ cv::Rect read_roi(const std::string& text) {
 }
 
 cv::Mat1b read_mask(const std::string& file) {
-  cv::Mat picture;
-  if (!open_frames(file)->next(picture))
-    throw InputError(Where{.file = file, .key = {}}, "holds no picture.");
+  const auto frames = open_frames(file);
+  cv::Mat picture, another;
+  if (!frames->next(picture)) throw InputError(Where{.file = file, .key = {}}, "holds no picture.");
+  if (frames->next(another))
+    throw InputError(Where{.file = file, .key = {}}, "holds several pictures, but a mask is one picture.");
   return picture != 0;
 }
 

@@ -1,10 +1,14 @@
 #include "imaging/track/track.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/error.hpp"
 #include "imaging/cell/plate_row.hpp"
 #include "imaging/phase/trigger_list.hpp"
 #include "imaging/settings/configure_locator.hpp"
@@ -14,10 +18,32 @@ namespace twincell::imaging {
 
 namespace {
 
-bool outside(const CellDescription& cell, cv::Size picture, const Detection& b) {
+bool outside(const CellDescription& cell, const std::optional<double>& lowest, cv::Size picture,
+             const Detection& b) {
   if (!cell.origin || !cell.pixels_per_sigma) return false;
   const Vec3 r = cell.pixel_frame(picture).cell_from_pixel({b.x, b.y});
-  return (cell.width && (r.x() < 0 || r.x() > *cell.width)) || (cell.height && r.z() > *cell.height + 0.5);
+  return (cell.width && (r.x() < 0 || r.x() > *cell.width)) || (cell.height && r.z() > *cell.height + 0.5) ||
+         (lowest && r.z() < *lowest);
+}
+
+/// The lowest height that the plate reaches, if the drive is known.
+std::optional<double> lowest_plate(const CellDescription& cell) {
+  const std::optional<Drive> drive = cell.drive();
+  if (!drive) return {};
+  return drive->axis == Axis::z ? -drive->displacement_bound() : 0;
+}
+
+/// \throws ConfigError if all detections lie outside the cell
+void require_some_inside(const CellDescription& cell, std::size_t inside, std::size_t outside) {
+  if (inside > 0 || outside == 0) return;
+  throw ConfigError(
+      Where{.file = {}, .key = "camera.origin_px"},
+      fmt::format(
+          "is {:g}, {:g}, but none of the {} located beads lies inside the cell{}{}; correct the origin, "
+          "camera.pixels_per_sigma = {:g}, or the size of the cell.",
+          cell.origin->x_px, cell.origin->y_px, outside,
+          cell.width ? fmt::format(" of width {:g}", *cell.width) : "",
+          cell.height ? fmt::format(" and height {:g}", *cell.height) : "", *cell.pixels_per_sigma));
 }
 
 double bytes_of(const cv::Mat& frame) {
@@ -71,6 +97,8 @@ Detections detect(FramesAhead& frames, const LocatorOptions& locator, const Cell
   Stage locating(times, "locating", "beads");
   Detections all{.frames = DetectionStore(folder)};
   std::vector<TrackedBead> beads;
+  std::size_t inside = 0;
+  const std::optional<double> lowest = lowest_plate(cell);
   locate_stack(
       frames, locator, threads,
       [&](std::int64_t, const cv::Mat& grey, const Located& found) {
@@ -83,7 +111,7 @@ Detections detect(FramesAhead& frames, const LocatorOptions& locator, const Cell
           b.x += region.corner().x;
           b.y += region.corner().y;
           if (region.cuts(b.x, b.y, b.radius)) continue;
-          if (outside(cell, picture, b)) {
+          if (outside(cell, lowest, picture, b)) {
             ++all.outside_cell;
             continue;
           }
@@ -95,9 +123,11 @@ Detections detect(FramesAhead& frames, const LocatorOptions& locator, const Cell
                            .sigma_x_px = b.sigma_x,
                            .sigma_y_px = b.sigma_y});
         }
+        inside += beads.size();
         all.frames.append(beads);
       },
       progress);
+  require_some_inside(cell, inside, all.outside_cell);
   return all;
 }
 

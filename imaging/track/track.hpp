@@ -26,18 +26,17 @@ struct TrackedStack : LinkedDetections {
 
 /// Locates the beads, determines the phases and links. The stack is read once.
 /// \param locator options; settings left open are found from the first frames (configure_locator.hpp)
-/// \param cell origin, scale and size: if all are known, detections more than half a bead outside the walls
-///     are counted and excluded; otherwise all are kept. Drive, frames per cycle and scale give the linker
-///     the fall of a bead per frame interval
+/// \param cell origin, scale and size: if all are known, detections more than half a bead outside the walls,
+///     or below the plate where the drive is known, are counted and excluded; otherwise all are kept. Drive,
+///     frames per cycle and scale give the linker the fall of a bead per frame interval
 /// \param folder folder for the beads on disk, about 64 bytes per bead and frame; empty: the folder for
 ///     temporary files
 /// \param region part of the picture that is searched; positions remain those of the whole picture. Discs cut
 ///     by the mask are left out. The plate is sought in the whole picture
 /// \param times receives the times of the stages "reading", "settings", "locating" (located beads) and
 ///     "linking" (links; with the estimate of the phases); null: not timed
-/// \throws InputError if a list of triggers does not have a line for each frame; ConfigError as check_lock
-/// and
-///     Region::check
+/// \throws InputError if a list of triggers does not have a line for each frame; ConfigError if all
+///     detections lie outside the cell, and as check_lock and Region::check
 TrackedStack track_stack(FrameSource& frames, const LocatorOptions& locator, LinkOptions link,
                          const CellDescription& cell, int threads, Progress& progress = Progress::none(),
                          const PhaseSource& source = {}, const std::filesystem::path& folder = {},

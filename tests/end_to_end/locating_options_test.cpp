@@ -146,6 +146,7 @@ TEST(LocatingOptions, BadOnesAreRefusedInASentence) {
            {"--roi", "-1,2,3,4", "left,top,width,height"},
            {"--mask", folder / "small.png", "has 20 x 10 px, but the frames have"},
            {"--mask", folder / "none.png", "none.png"},
+           {"--mask", kDemo, "a mask is one picture"},
            {"--frames", "5:5", "must exceed"},
            {"--frames", "five", "A:B"},
            {"--frames", "400:", "the stack has 40 frames"},

@@ -280,6 +280,8 @@ TEST_F(Refusals, NumbersInOptions) {
        {"track @mixed -o @new.h5 --memory 1.5", kUsage, {"--memory", "whole number"}},
        {"track @mixed -o @new.h5 --cell-width nan", kUsage, {"--cell-width", "'nan'"}},
        {"track @mixed -o @new.h5 --drive-gamma nan", kUsage, {"--drive-gamma", "'nan'"}},
+       {"track @mixed -o @new.h5 --truth @beads.csv --scored-rows 9 3", kUsage, {"--scored-rows", "9", "3"}},
+       {"draw @t.h5 -o @new.html --fps 0", kUsage, {"--fps", "0.01"}},
        {sim + "--threads -1", kUsage, {"--threads", "0 to 4096"}},
        {sim + "--threads 2.5", kUsage, {"--threads", "whole number"}},
        {sim + "--seed -1", kUsage, {"--seed", "'-1'", "whole number"}},
@@ -314,6 +316,15 @@ TEST_F(Refusals, NumbersInOptions) {
        {"match @mixed @s.toml -o @new --twins 0", kUsage, {"--twins", "1 to 1000"}},
        {"reproduce p1-fig1 -o @new --budget nan", kUsage, {"--budget", "'nan'"}},
        {"sweep run @s.toml --folder @new --shard 0/2", kUsage, {"s.toml", "scene"}}});
+}
+
+// The libraries name an option by its key, and a file may have that name.
+TEST_F(Refusals, AFileWithTheNameOfAnOption) {
+  expect({{"analyze only", kInput, {"twincell: only: the file does not exist"}},
+          {"track frames -o @new.h5 --cell frames", kInput, {"twincell: frames: the file does not exist"}},
+          {"draw @t.h5 -o .",
+           kUsage,
+           {"twincell: .: the output is a folder where a file is to be written.\n"}}});
 }
 
 // What belongs to another output, another number of stacks, another dimension or another side.

@@ -120,6 +120,67 @@ TEST(Track, BeadsOfSeveralSizes) {
   EXPECT_LE(said["wrong_radius"], 10);
 }
 
+// The first two cycles of a shipped film, whose plate is at row 186.2.
+class DemoFilm : public ::testing::Test {
+ protected:
+  Ran track(std::vector<std::string> more) {
+    std::vector<std::string> words = {"track", stack_, "-o", folder_ / "exp.h5", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    std::filesystem::remove(folder_ / "exp.h5");
+    return run_program(words);
+  }
+  const std::string stack_ = TWINCELL_SOURCE_DIR "/data_samples/demo/gamma-0.9",
+                    cell_ = stack_ + "/CELL.toml";
+  const TemporaryFolder folder_;
+};
+
+TEST_F(DemoFilm, TheStatedDriveIsThatOfTheChosenFrames) {
+  const std::string per_second =
+      "[camera]\npixels_per_sigma = 12\norigin_px = [20, 186.2]\nframes_per_cycle = "
+      "20\nframe_rate_hz = 222.94\n[cell]\nwidth_sigma = 10\n[drive]\n"
+      "amplitude_sigma = 0.9\nfrequency_hz = 11.147\n[scale]\nsigma_mm = 2\n"
+      "gravity_m_s2 = 9.81\n";
+  write(folder_ / "CELL.toml", per_second);
+  for (const std::string& cell : std::vector<std::string>{cell_, folder_ / "CELL.toml"})
+    for (const std::string frames : {":40:2", ":40:5", "7:40"}) {
+      const Ran ran = track({"--cell", cell, "--frames", frames});
+      ASSERT_EQ(ran.code, 0) << ran.err;
+      const auto said = nlohmann::json::parse(ran.out);
+      EXPECT_FALSE(said.contains("drive_disagreement")) << frames << ": " << said["drive_disagreement"];
+      EXPECT_EQ(said["drive_check"]["by"], "plate") << said["drive_check"];
+      EXPECT_NEAR(said["drive_check"]["amplitude"], 0.9, 0.002);
+    }
+}
+
+TEST_F(DemoFilm, AWrongOriginIsNoticed) {
+  const Ran above = track({"--cell", cell_, "--frames", ":20", "--set", "camera.origin_px=[20, 20]"});
+  EXPECT_EQ(above.code, 2);
+  EXPECT_NE(above.err.find("camera.origin_px: is 20, 20, but none of the 2000 located beads lies inside"),
+            std::string::npos)
+      << above.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "exp.h5"));
+  for (const std::string row : {"216", "156"}) {
+    const Ran ran =
+        track({"--cell", cell_, "--frames", ":40", "--set", "camera.origin_px=[20, " + row + "]"});
+    EXPECT_NE(ran.err.find("the plate in the frames is at row 186.2, but camera.origin_px states row " + row),
+              std::string::npos)
+        << ran.err;
+  }
+}
+
+TEST_F(DemoFilm, TheOriginIsTwoNumbers) {
+  const Ran ran = track({"--frames", ":3", "--pixels-per-sigma", "12", "--origin-px", "20", "186.2"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(nlohmann::json::parse(ran.out)["camera"]["origin_px"], (std::vector<double>{20, 186.2}));
+}
+
+TEST_F(DemoFilm, AScoreOfNothingIsNone) {
+  const Ran ran =
+      track({"--frames", ":3", "--truth", stack_ + "/truth.csv", "--scored-rows", "9000", "9001"});
+  EXPECT_EQ(ran.code, 3);
+  EXPECT_NE(ran.err.find("has no bead in the frames and rows that are scored"), std::string::npos) << ran.err;
+}
+
 TEST(Track, RefusesBadPhaseLocks) {
   const TemporaryFolder folder;
   const std::string stack = TWINCELL_SOURCE_DIR "/data_samples/demo/gamma-0.9";

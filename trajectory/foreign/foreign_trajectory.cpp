@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/median.hpp"
 
 namespace twincell {
 
@@ -16,6 +17,21 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& option, const std::string& why) {
   throw ConfigError({"", 0, 0, option}, why);
+}
+
+/// Median over some beads of the distance to the nearest other bead; 0 for fewer than two beads.
+double median_spacing(const std::vector<SnapshotBead>& beads) {
+  constexpr std::size_t kMost = 100;
+  if (beads.size() < 2) return 0;
+  std::vector<double> nearest;
+  const std::size_t stride = std::max<std::size_t>(1, beads.size() / kMost);
+  for (std::size_t i = 0; i < beads.size(); i += stride) {
+    double closest = HUGE_VAL;
+    for (std::size_t j = 0; j < beads.size(); ++j)
+      if (j != i) closest = std::min(closest, (beads[j].position - beads[i].position).norm());
+    nearest.push_back(closest);
+  }
+  return upper_median(nearest);
 }
 
 /// Reads the next snapshot and sorts its beads by id. \throws InputError if an id occurs twice
@@ -45,6 +61,10 @@ struct ForeignTrajectory::Impl {
   std::int64_t first_cycle = 0;
   std::optional<Vec3> first_position;
   std::array<bool, 2> flat = {true, true};  ///< all beads have the same y; the same z
+  std::optional<double> time_before;        ///< that the file states of the frame before, its unit
+  bool replaces_times = false;
+  double spacing = 0;      ///< of the beads of the first frame, sigma
+  std::size_t beyond = 0;  ///< beads of the first frame beside the cell
 
   /// Converts a vector from the axes of Snapshot to those of Box. In 2D, y of the snapshot is our z, and -z
   /// is our y.
@@ -93,7 +113,19 @@ struct ForeignTrajectory::Impl {
           (s.periodic[a] && (s.lower[k] != first.lower[k] || s.upper[k] != first.upper[k])))
         reader.fail_at(s.line, "the box is not periodic as it was in the first frame.");
     }
+    if (o.timestep && s.time && std::abs(time(s) * t0 - *s.time) > 1e-6 * std::abs(*s.time))
+      replaces_times = true;
+    if (!o.timestep && time_before && !(*s.time > *time_before))
+      reader.fail_at(s.line, fmt::format("time {:g} of a frame comes after time {:g}; times must increase.",
+                                         *s.time, *time_before));
+    time_before = s.time;
     for (const SnapshotBead& a : s.beads) {
+      constexpr double kFarthest = 1e7;  // sigma, as in H5MD files (docs/h5md.md)
+      if (!((a.position - o.origin).cwiseAbs().maxCoeff() <= kFarthest * o.sigma))
+        reader.fail_at(a.line,
+                       fmt::format("bead {} is at ({:g}, {:g}, {:g}), farther than {:g} bead diameters "
+                                   "from the origin of the cell.",
+                                   a.id, a.position.x(), a.position.y(), a.position.z(), kFarthest));
       constexpr double kFlat = 1e-9;
       if (!first_position) first_position = a.position;
       for (const int k : {1, 2})
@@ -150,6 +182,13 @@ struct ForeignTrajectory::Impl {
     info.box.boundary = {edge(0), o.dimension == 2 ? Boundary::open : edge(1),
                          o.dimension == 2 ? edge(1) : edge(2)};
     if (o.width) info.box.upper.x() = *o.width / o.sigma;
+    spacing = median_spacing(first.beads) / o.sigma;
+    if (info.box.boundary[0] == Boundary::wall)
+      beyond = static_cast<std::size_t>(
+          std::count_if(first.beads.begin(), first.beads.end(), [&](const SnapshotBead& a) {
+            const double x = (a.position.x() - o.origin.x()) / o.sigma;
+            return x < 0 || x > info.box.upper.x();
+          }));
     if (o.dimension == 2) info.box.upper.y() = (first.upper.z() - first.lower.z()) / o.sigma;
     if (!columns.radius) info.radius.clear();
     if (!columns.mass || !o.bead_mass) info.mass.clear();
@@ -275,6 +314,18 @@ std::size_t ForeignTrajectory::n_frames() const {
 
 bool ForeignTrajectory::is_flat() const {
   return impl_->info.n_beads > 1 && (impl_->flat[0] || impl_->flat[1]);
+}
+
+bool ForeignTrajectory::replaces_times() const {
+  return impl_->replaces_times;
+}
+
+double ForeignTrajectory::spacing() const {
+  return impl_->spacing;
+}
+
+std::size_t ForeignTrajectory::n_beyond() const {
+  return impl_->beyond;
 }
 
 void ForeignTrajectory::copy_to(TrajectorySink& sink, Progress& progress) const {

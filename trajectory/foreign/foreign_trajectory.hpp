@@ -53,6 +53,12 @@ class ForeignTrajectory {
   [[nodiscard]] std::size_t n_frames() const;
   /// Whether several beads have the same y, or the same z (upwards for 3D), in all frames.
   [[nodiscard]] bool is_flat() const;
+  /// Whether the times that the file states differ from those of the time step, which replace them.
+  [[nodiscard]] bool replaces_times() const;
+  /// Median distance of a bead from its nearest neighbour in the first frame, sigma; 0 for fewer than two.
+  [[nodiscard]] double spacing() const;
+  /// Number of beads of the first frame whose centres lie beside the cell, beyond its side walls.
+  [[nodiscard]] std::size_t n_beyond() const;
   /// Appends all frames to `sink` in order.
   void copy_to(TrajectorySink& sink, Progress& progress = Progress::none()) const;
 

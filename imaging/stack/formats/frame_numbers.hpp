@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What the numbers in the names of a folder's pictures tell: frames that are missing, and pictures of
-/// several series.
+/// What the numbers in the names of a folder's pictures tell: frames that are missing or doubled, and
+/// pictures of several series.
 
 #include <string>
 #include <vector>
@@ -12,8 +12,9 @@ namespace twincell::imaging::frames {
 /// extension; what precedes it names the series.
 ///
 /// - Several series of at least two pictures each: two cameras, or two recordings, in one folder.
-/// - Numbers that are skipped, if at least nine tenths of the steps between neighbours are equal, and all are
-///   multiples of that step. Numbers that are times do not step evenly and give no sentence.
+/// - Numbers that several pictures of a series have: copies, or one frame in two formats.
+/// - Numbers that are skipped, if at least three quarters of the steps between neighbours are equal, and all
+///   are multiples of that step. Numbers that are times do not step evenly and give no sentence.
 /// \param names in natural order
 std::vector<std::string> notes_on_names(const std::vector<std::string>& names);
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
@@ -274,6 +275,27 @@ TEST_F(ForeignFormats, DamagedTables) {
             "f:3: the time differs from that of line 2, which has the same frame.");
   EXPECT_EQ(refusal("csv", "frame;particle;x;y\n0;1;2;3\n"),
             "f:1: the fields are separated by semicolons; use commas, and decimal points in numbers.");
+  // What a trajectory file cannot hold is refused before one is written.
+  EXPECT_EQ(
+      refusal("csv", head + "0,1,1e300,-3\n"),
+      "f:2: bead 1 is at (1e+300, 3, 0), farther than 1e+07 bead diameters from the origin of the cell.");
+  for (const char* time : {"5", "4"})
+    EXPECT_EQ(refusal("csv", fmt::format("frame,particle,x,y,time\n0,1,2,-3,5\n1,1,2,-3,{}\n", time), {}),
+              fmt::format("f:3: time {} of a frame comes after time 5; times must increase.", time));
+}
+
+TEST_F(ForeignFormats, UnitsAndSizesThatNoFileIsLikelyToHave) {
+  put_file(file(), "frame,particle,x,y,time\n0,1,2,-3,0\n0,2,14,-3,0\n1,1,2,-3,1\n");
+  const auto open = [&](const ForeignOptions& options) {
+    return std::make_unique<ForeignTrajectory>(file(), foreign_format("csv", ""), options);
+  };
+  EXPECT_DOUBLE_EQ(open({})->spacing(), 12) << "pixels that are taken for bead diameters";
+  EXPECT_DOUBLE_EQ(open({.sigma = 12})->spacing(), 1);
+  EXPECT_EQ(open({})->n_beyond(), 0U);
+  EXPECT_EQ(open({.width = 10})->n_beyond(), 1U) << "the bead at x = 14";
+  EXPECT_EQ(open({.origin = Vec3(3, 0, 0)})->n_beyond(), 1U) << "the bead at x = 2";
+  EXPECT_FALSE(open({.timestep = 1})->replaces_times());
+  EXPECT_TRUE(open({.timestep = 2})->replaces_times());
 }
 
 TEST_F(ForeignFormats, TrackMateTracks) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <set>
+#include <sstream>
 
 #include "analysis/report/windows_figure.hpp"
 #include "tests/support/complaint.hpp"
@@ -56,6 +58,30 @@ TEST(Windows, EachHasItsDriveAndItsResults) {
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "first_cycle,cycles,gamma_begin,gamma_end,omega_begin,omega_end,h_cm,h_cm_low,h_cm_high");
   EXPECT_NE(csv.find("\n3,3,1.3,1.6,1,1,1.4,"), std::string::npos) << csv;
+}
+
+TEST(Windows, NoneContainsTheTurnOfTheDrive) {
+  MemoryTrajectory run = ramped_run();
+  run.info().drive->ramp->returns = true;  // Gamma 1 to 2 in cycles 0 to 4, and back in 5 to 9
+  std::vector<CycleRange> left_out;
+  const std::vector<Window> windows =
+      analyze_windows(run, {.only = {"h_cm"}}, 3, Progress::none(), &left_out);
+  ASSERT_EQ(windows.size(), 2U);
+  EXPECT_EQ(windows[0].first_cycle, 0);
+  EXPECT_EQ(windows[1].first_cycle, 5);
+  EXPECT_NEAR((*windows[1].drive)[0].gamma(), 2, 1e-12);
+  EXPECT_NEAR((*windows[1].drive)[1].gamma(), 1.4, 1e-12);
+  EXPECT_NEAR(find_result(windows[1].results, "h_cm").value(), 1.6, 1e-12);
+  EXPECT_EQ(left_out, (std::vector<CycleRange>{{3, 4}, {8, 9}}));
+  EXPECT_EQ(analyze_windows(run, {.discard_cycles = 7, .only = {"h_cm"}}, 3).front().first_cycle, 7);
+}
+
+TEST(Windows, NoTwoColumnsHaveOneName) {
+  const std::string csv = windows_csv(analyze_windows(ramped_run(), {.rest_height = 1}, 5));
+  std::set<std::string> seen;
+  std::istringstream heading(csv.substr(0, csv.find('\n')));
+  for (std::string name; std::getline(heading, name, ',');) EXPECT_TRUE(seen.insert(name).second) << name;
+  EXPECT_TRUE(seen.contains("contact_force_density_low"));
 }
 
 // A run whose drive changes has no result of its own, only its windows have.

@@ -33,7 +33,25 @@ TEST(FrameNumbers, SkippedOnesAreNamed) {
   EXPECT_NE(notes[0].find("skip 4 frames: 31, 41 to 43;"), std::string::npos) << notes[0];
 }
 
-// Numbers that are times: 90 % of the steps are not equal, or the others are no multiples.
+TEST(FrameNumbers, AGapInAShortStackIsNamed) {
+  const auto notes = notes_on_names(joined(numbered("f_{}.png", 0, 2), numbered("f_{}.png", 4, 7)));
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("skip 1 frame: 3;"), std::string::npos) << notes[0];
+}
+
+TEST(FrameNumbers, FramesThatAreThereTwiceAreNamed) {
+  for (const auto& [first, second] :
+       {std::pair{"f_{}.png", "f_{}.tif"}, std::pair{"f_{}.png", "f_{:03}.png"}}) {
+    const auto notes = notes_on_names(joined(numbered(first, 1, 4), numbered(second, 1, 4)));
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_NE(notes[0].find("4 pictures have a number that another picture has too, first f_1.png and f_"),
+              std::string::npos)
+        << notes[0];
+  }
+  EXPECT_EQ(notes_on_names(joined(numbered("f{}.png", 1, 9), {"f4_old.png"})).size(), 1U);
+}
+
+// Numbers that are times: 75 % of the steps are not equal, or the others are no multiples.
 TEST(FrameNumbers, UnevenStepsAreNoGaps) {
   EXPECT_TRUE(notes_on_names({"t100.png", "t133.png", "t167.png", "t200.png", "t233.png"}).empty());
   auto names = numbered("t{}.png", 100, 400, 10);

@@ -30,7 +30,32 @@ TEST(CellNames, ADotInAFolderIsNoExtension) {
 
 TEST(CellNames, EqualNamesAreToldApart) {
   EXPECT_EQ(names_of_stacks({"a/frames", "b/frames"}), (std::vector<std::string>{"a-frames", "b-frames"}));
-  EXPECT_EQ(names_of_stacks({"a/f.avi", "a/f.tif"}), (std::vector<std::string>{"a-f-1", "a-f-2"}));
+  EXPECT_EQ(names_of_stacks({"a/f.avi", "a/f.tif"}), (std::vector<std::string>{"f.avi", "f.tif"}));
+  EXPECT_EQ(names_of_stacks({"f.h5:/day/1", "f.h5:/day/2"}),
+            (std::vector<std::string>{"f.h5-day-1", "f.h5-day-2"}));
+  EXPECT_EQ(names_of_stacks({"a/c/frames", "b/c/frames"}),
+            (std::vector<std::string>{"a-c-frames", "b-c-frames"}));
+}
+
+// `match` pairs the stacks by name with the cell files that `new` wrote, and both may list them differently.
+TEST(CellNames, NamesDoNotDependOnTheOrder) {
+  const std::vector<fs::path> stacks = {"a/c/frames", "b/c/frames", "a/f.avi", "a/f.tif"};
+  const std::vector<std::string> names = names_of_stacks(stacks);
+  EXPECT_EQ(names_of_stacks({stacks.rbegin(), stacks.rend()}),
+            (std::vector<std::string>{names.rbegin(), names.rend()}));
+}
+
+TEST(CellNames, TheReportKeepsItsFolder) {
+  EXPECT_EQ(names_of_stacks({"day/report", "day/frames"}),
+            (std::vector<std::string>{"day-report", "frames"}));
+}
+
+TEST(CellNames, AStackIsNamedOnce) {
+  const TwoStacks s;
+  const fs::path link = s.folder / "link";
+  fs::create_directory_symlink(s.weak, link);
+  for (const fs::path& again : {s.weak, s.weak / "", s.weak / ".." / "gamma-1.5", link})
+    expect_refusal<ConfigError>([&] { (void)names_of_stacks({s.weak, again}); }, "same stack", "gamma-1.5");
 }
 
 TEST(CellNames, OneCellServesAllAndSeveralArePairedInOrder) {
