@@ -86,7 +86,9 @@ std::string advice_on_file(const std::vector<std::string>& words, const std::str
   for (std::size_t i = 1; i < words.size(); ++i) {
     const std::string& word = words[i];
     if (word.empty() || word.starts_with('-') || !complaint.starts_with(word + ": ")) continue;
-    if (complaint.starts_with(word + ": the output")) return {};  // it says itself what to name instead
+    // Complaints about an output say themselves what to name instead.
+    for (const char* of_output : {": the output", ": the file exists and", ": the folder is "})
+      if (complaint.starts_with(word + of_output)) return {};
     std::error_code error;
     return fs::exists(fs::symlink_status(word, error)) ? advice_on_kind(words[0], word)
                                                        : advice_on_missing(words[0], word);

@@ -85,6 +85,7 @@ void refuse_other_format(const std::filesystem::path& name, const Product& produ
 
 /// Registers the inputs of the verb, then checks its outputs against the output rules and locks them.
 void guard_outputs(const CLI::App& verb, Common& common) {
+  common.verb = &verb;
   replace_by_force(common.force);
   const auto is_output = [&](const CLI::Option* option) {
     return std::any_of(common.outputs.begin(), common.outputs.end(),
@@ -121,6 +122,14 @@ void guard_outputs(const CLI::App& verb, Common& common) {
 }
 
 }  // namespace
+
+void protect_named_inputs(const Common& common, const std::vector<std::filesystem::path>& files) {
+  for (const std::filesystem::path& file : files)
+    if (!file.empty()) protect_input(file);
+  for (const Output& output : common.outputs)
+    if (output.verb == common.verb && output.option->count() > 0)
+      (void)require_output(output.option->as<std::string>(), output.product);
+}
 
 int Common::n_threads() const {
   return threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));

@@ -35,9 +35,10 @@ struct Common {
   int threads = 0;                    ///< number of threads; 0: automatic, at most one per core
   std::optional<std::uint64_t> seed;  ///< of the random numbers; absent: the default of the verb
   std::string command_line;
-  bool force = false;             ///< replace an existing output file of another kind
-  bool result_on_stderr = false;  ///< an output is '-', which occupies standard output
-  std::vector<Output> outputs;    ///< output options of all verbs
+  bool force = false;              ///< replace an existing output file of another kind
+  bool result_on_stderr = false;   ///< an output is '-', which occupies standard output
+  std::vector<Output> outputs;     ///< output options of all verbs
+  const CLI::App* verb = nullptr;  ///< the verb that runs, once its options are read
 
   /// Number of threads: the option, or the number of cores if the option is 0.
   [[nodiscard]] int n_threads() const;
@@ -77,6 +78,10 @@ CLI::Option* writes(Common& common, CLI::App& verb, CLI::Option* option, Product
 /// kColumns columns on a terminal, or nothing with --quiet. The result goes to stderr if an output of the
 /// verb is standard output. A reader that has stopped reading, such as head, is no error.
 void print_result(const Common& common, const nlohmann::json& document, const std::string& text);
+/// Registers the files that an input names, such as the start of a scene, as inputs too, and refuses an
+/// output of the verb that is one of them. Call it before the work. Empty paths are ignored. \throws
+/// ConfigError as require_output
+void protect_named_inputs(const Common& common, const std::vector<std::filesystem::path>& files);
 /// Prints a note or warning on stderr ("note: …"), unless --quiet is set.
 void note(const Common& common, const std::string& text);
 

@@ -53,6 +53,7 @@ sweep::Plan plan_of(const SweepOptions& options, const Common& common) {
     throw ConfigError({options.plan, 0, 0, "plan"},
                       "is a folder; name the plan (TOML), and the folder of the sweep with --folder.");
   sweep::Plan plan = sweep::read_plan(options.plan);
+  protect_named_inputs(common, {plan.scene_name});
   if (common.seed) plan.seed = *common.seed;
   return plan;
 }

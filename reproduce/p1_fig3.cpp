@@ -17,6 +17,7 @@
 #include "core/json_text.hpp"
 #include "core/table.hpp"
 #include "reproduce/is_arrested.hpp"
+#include "reproduce/own_points.hpp"
 #include "reproduce/p1_scene.hpp"
 #include "reproduce/reproduction.hpp"
 
@@ -227,12 +228,11 @@ struct Filmed {
 std::vector<Filmed> filmed_in(const std::filesystem::path& file) {
   if (file.empty()) return {};
   const Table table = read_table(file);
-  const auto& layers = table.column("N_l");
-  const auto& bouncing = table.column("bouncing");
-  const auto& convection = table.column("convection");
+  const auto& layers = positive_column(table, "N_l");
+  const auto& bouncing = positive_column(table, "bouncing", true);
+  const auto& convection = positive_column(table, "convection", true);
   std::vector<Filmed> points;
-  for (std::size_t i = 0; i < layers.size(); ++i)
-    if (std::isfinite(layers[i])) points.push_back({layers[i], bouncing[i], convection[i]});
+  for (std::size_t i = 0; i < layers.size(); ++i) points.push_back({layers[i], bouncing[i], convection[i]});
   std::sort(points.begin(), points.end(),
             [](const Filmed& a, const Filmed& b) { return a.layers < b.layers; });
   return points;

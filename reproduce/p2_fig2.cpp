@@ -6,6 +6,7 @@
 
 #include "core/table.hpp"
 #include "reproduce/gas.hpp"
+#include "reproduce/own_points.hpp"
 
 namespace twincell::reproduce {
 
@@ -190,8 +191,8 @@ std::string both_starts(const Gas& gas, const Runs& runs) {
 std::optional<Series> own_of(const Request& request) {
   if (request.data.empty()) return std::nullopt;
   const Table table = read_table(request.data);
-  Series s{.title = "yours", .x = table.column("W"), .y = {}};
-  for (const double t : table.column("T_bar_z")) s.y.push_back({.value = t, .low = {}, .high = {}});
+  Series s{.title = "yours", .x = positive_column(table, "W"), .y = {}};
+  for (const double t : positive_column(table, "T_bar_z")) s.y.push_back({.value = t, .low = {}, .high = {}});
   return s;
 }
 

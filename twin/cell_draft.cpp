@@ -270,9 +270,20 @@ class Draft {
   }
 
   void doubts() {
-    imaging::ShakenCell numbers{.sigma_mm = a_.sigma_mm, .frequency_hz = a_.frequency_hz, .gamma = a_.gamma};
+    imaging::ShakenCell numbers{.sigma_mm = a_.sigma_mm,
+                                .frequency_hz = a_.frequency_hz,
+                                .gamma = a_.gamma,
+                                .gravity_m_s2 = a_.gravity_m_s2};
     if (out_.gamma) numbers.gamma = out_.gamma->value;
     for (const std::string& doubt : imaging::implausible_numbers(numbers)) out_.notes.push_back(doubt);
+    constexpr double kSame = 0.03;  // as in the check of a stated drive
+    const std::optional<double> rate = a_.frame_rate_hz ? a_.frame_rate_hz : s_.frame_rate_hz;
+    if (!rate || !a_.frequency_hz || !s_.drive) return;
+    if (const double seen = *rate / s_.drive->period; std::abs(seen / *a_.frequency_hz - 1) > kSame)
+      out_.notes.push_back(fmt::format(
+          "{:g} frames per second and a period of {:.5g} frames give a frequency of {:.4g} Hz, but "
+          "{:g} Hz is stated",
+          *rate, s_.drive->period, seen, *a_.frequency_hz));
   }
 
   const CellSurvey& s_;

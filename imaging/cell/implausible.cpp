@@ -12,6 +12,7 @@ ShakenCell shaken_cell(const CellDescription& cell) {
   ShakenCell numbers;
   if (cell.scale.sigma_m) numbers.sigma_mm = *cell.scale.sigma_m * 1e3;
   numbers.gamma = cell.drive_spec.gamma;
+  numbers.gravity_m_s2 = cell.scale.gravity_m_s2;
   if (!is_whole(cell.drive_spec)) return numbers;  // the film gives the rest
   const std::optional<Drive> drive = cell.drive();
   if (!drive) return numbers;
@@ -33,6 +34,7 @@ std::vector<std::string> implausible_numbers(const ShakenCell& cell) {
   check("the frequency of the plate", cell.frequency_hz, 0.1, 2000, " Hz", "is it in Hz?");
   check("Gamma = A omega^2/g", cell.gamma, 0.01, 300, "",
         "are diameter and frequency in the units that their keys name?");
+  check("gravity", cell.gravity_m_s2, 0.01, 100, " m/s^2", "is it in m/s^2?");
   return doubts;
 }
 

@@ -15,13 +15,15 @@ struct ShakenCell {
   std::optional<double> sigma_mm;      ///< bead diameter
   std::optional<double> frequency_hz;  ///< of the plate
   std::optional<double> gamma;         ///< A omega^2/g
+  std::optional<double> gravity_m_s2;  ///< g
 };
 
 /// The numbers of a cell description, as far as it states them.
 ShakenCell shaken_cell(const CellDescription& cell);
 
 /// One sentence for each number outside the range that shaken beads have: diameters of 0.02 to 100 mm,
-/// frequencies of 0.1 to 2000 Hz, Gamma of 0.01 to 300. Empty if all are inside.
+/// frequencies of 0.1 to 2000 Hz, Gamma of 0.01 to 300, gravity of 0.01 to 100 m/s^2. Empty if all are
+/// inside.
 std::vector<std::string> implausible_numbers(const ShakenCell& cell);
 
 }  // namespace twincell::imaging

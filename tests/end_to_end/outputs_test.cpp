@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -284,6 +285,37 @@ TEST(Outputs, AnInputIsNeverAnOutputThroughAnyName) {
                 .code,
             2);
   EXPECT_EQ(Sandbox::contents(), before);
+}
+
+// A scene names the bed from which it starts and the record of its drive, a plan its scene.
+TEST(Outputs, AFileThatAnInputNamesIsNeverAnOutput) {
+  const Sandbox sandbox;
+  std::ofstream("from.toml") << "preset = \"fortini-huang-2015\"\n[drive]\ngamma = 1.2\n[start]\nkind = "
+                                "\"trajectory\"\nfrom = \"sim.h5\"\n[cell]\nwidth = 8.0\n";
+  std::ofstream record("record");
+  record << "time_t0,position_sigma\n";
+  for (int i = 0; i <= 400; ++i) record << i << ',' << std::sin(0.5 * i) << '\n';
+  record.close();
+  std::ofstream("recorded.toml") << "preset = \"fortini-huang-2015\"\n[beads]\ncount = 4\n[cell]\nwidth = "
+                                    "4.0\n[drive]\nfile = \"record\"\nomega = 0.5\n[time]\ndiscard = 0\n"
+                                    "cycles = 2\n";
+  std::ofstream("named.json") << "preset = \"fortini-huang-2015\"\n[beads]\ncount = 4\n";
+  std::ofstream("plan.toml") << "scene = \"named.json\"\n[axes]\ndrive.gamma = [1.2]\n";
+  const auto before = Sandbox::contents();
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"simulate", "from.toml", "-o", "sim.h5"},
+           {"simulate", "from.toml", "-o", "io/../sim.h5", "--force"},
+           {"simulate", "scene.toml", "--set", "start.kind=\"trajectory\"", "--set", "start.from=\"sim.h5\"",
+            "-o", "sim.h5"},
+           {"simulate", "recorded.toml", "-o", "record", "--force"},
+           {"measure", "recorded.toml", "-o", "record", "--force"},
+           {"measure", "from.toml", "-o", "sim.h5", "--force"},
+           {"sweep", "collect", "plan.toml", "-o", "named.json", "--force"}}) {
+    const Ran ran = run_program(words);
+    EXPECT_EQ(ran.code, 2) << ran.err;
+    EXPECT_NE(ran.err.find("the output is an input of the same command"), std::string::npos) << ran.err;
+    EXPECT_EQ(Sandbox::contents(), before) << words.back();
+  }
 }
 
 TEST(Outputs, AWordOfTheProgramIsNoInputThoughAFileHasItsName) {

@@ -63,6 +63,24 @@ TEST(Reproduce, AnExperimentsTableNeedsItsColumns) {
   EXPECT_NE(bad.err.find("bouncing"), std::string::npos) << bad.err;
 }
 
+TEST(Reproduce, AnExperimentsNumbersAreAboveZero) {
+  const TemporaryFolder folder;
+  struct Case {
+    const char *name, *table, *said;
+  };
+  for (const auto& [name, table, said] :
+       {Case{"p1-fig3", "N_l,bouncing,convection\n20,1.2,2\n60,-1.2,2.9\n", "bouncing: row 2 is -1.2"},
+        Case{"p1-fig3", "N_l,bouncing,convection\n,1.2,2.9\n", "N_l: row 1 has no number"},
+        Case{"p2-fig2", "W,T_bar_z\n3,0\n", "T_bar_z: row 1 is 0"},
+        Case{"p2-table1", "W,T_bar_z\n-3,0.7\n", "W: row 1 is -3"}}) {
+    std::ofstream(folder / "own.csv") << table;
+    const Ran ran = run_program(
+        {"reproduce", name, "-q", "--budget", "0.001", "-o", folder / "out", "--data", folder / "own.csv"});
+    EXPECT_EQ(ran.code, 3) << ran.err;
+    EXPECT_NE(ran.err.find(said), std::string::npos) << ran.err;
+  }
+}
+
 /// Runs one name with the smallest budget and checks the properties common to all.
 nlohmann::json reproduced(const std::string& name, const std::string& out,
                           const std::vector<std::string>& figures) {

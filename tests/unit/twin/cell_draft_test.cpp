@@ -104,6 +104,26 @@ TEST(CellDraft, AFrequencyAndADiameterGiveGammaWithItsError) {
   EXPECT_EQ(cell.rotation_deg, 0);  // found to be 0 +- 0.001
 }
 
+TEST(CellDraft, AnswersThatNoShakerHasAreNoted) {
+  const auto notes = [](const CellSurvey& s, CellAnswers answers) {
+    std::string all;
+    for (const std::string& note : draft_cell(s, answers).notes) all += note + '\n';
+    return all;
+  };
+  CellSurvey s = survey();
+  EXPECT_EQ(notes(s, {.sigma_mm = 2, .frequency_hz = 20}), "");
+  EXPECT_NE(notes(s, {.sigma_mm = 2, .frequency_hz = 20, .gravity_m_s2 = 981}).find("gravity is 981 m/s^2"),
+            std::string::npos);
+  // The plate repeats itself after 20 frames.
+  EXPECT_EQ(notes(s, {.sigma_mm = 2, .frequency_hz = 20, .frame_rate_hz = 400}), "");
+  EXPECT_NE(
+      notes(s, {.sigma_mm = 2, .frequency_hz = 20, .frame_rate_hz = 25})
+          .find("25 frames per second and a period of 20 frames give a frequency of 1.25 Hz, but 20 Hz"),
+      std::string::npos);
+  s.frame_rate_hz = 500;  // of the camera's time stamps
+  EXPECT_NE(notes(s, {.sigma_mm = 2, .frequency_hz = 20}).find("500 frames per second"), std::string::npos);
+}
+
 TEST(CellDraft, TheFrameRateGivesTheFrequency) {
   CellSurvey s = survey();
   s.frame_rate_hz = 400;
