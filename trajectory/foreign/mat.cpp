@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <map>
 
@@ -59,17 +60,24 @@ class MatWriter final : public SnapshotWriter {
   }
 
   void finish() override {
-    const std::unique_ptr<mat_t, int (*)(mat_t*)> file(Mat_CreateVer(part_.c_str(), kHeader, MAT_FT_MAT5),
-                                                       &Mat_Close);
-    if (!file) fail();
-    for (const auto& [name, values] : of_frame_) write(file.get(), name, values, 1, n_frames_);
-    for (const auto& [name, cells] : moving_) write(file.get(), name, matrix(cells), n_beads_, n_frames_);
-    for (auto& [name, values] : of_bead_) {
-      values.resize(n_beads_, kAbsent);
-      write(file.get(), name, values, n_beads_, 1);
+    for (auto& [name, values] : of_bead_) values.resize(n_beads_, kAbsent);
+    {
+      const File file(Mat_CreateVer(part_.c_str(), kHeader, MAT_FT_MAT5), &Mat_Close);
+      if (!file) fail();
+      each_variable([&](matvar_t* v) {
+        if (Mat_VarWrite(file.get(), v, MAT_COMPRESSION_ZLIB) != 0) fail();
+      });
     }
-    write(file.get(), "length_unit", options_.length_unit);
-    write(file.get(), "time_unit", options_.time_unit);
+    // The library does not report a full disk: read the file back.
+    const File file(Mat_Open(part_.c_str(), MAT_ACC_RDONLY), &Mat_Close);
+    if (!file) fail();
+    each_variable([&](matvar_t* v) {
+      const Variable stored(Mat_VarReadNext(file.get()), &Mat_VarFree);
+      if (!stored || std::string(stored->name) != v->name || !stored->data ||
+          (v->class_type == MAT_C_DOUBLE &&
+           (stored->nbytes != v->nbytes || std::memcmp(stored->data, v->data, v->nbytes) != 0)))
+        fail();
+    });
   }
 
  private:
@@ -94,20 +102,36 @@ class MatWriter final : public SnapshotWriter {
     return values;
   }
 
-  void write(mat_t* file, const std::string& name, std::vector<double> values, std::size_t rows,
-             std::size_t columns) const {
-    std::size_t shape[2] = {rows, columns};
-    save(file, Mat_VarCreate(name.c_str(), MAT_C_DOUBLE, MAT_T_DOUBLE, 2, shape, values.data(), 0));
+  using File = std::unique_ptr<mat_t, int (*)(mat_t*)>;
+  using Variable = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
+
+  /// Makes one variable after the other and hands it to `use`.
+  template <class Use>
+  void each_variable(Use use) const {
+    const auto numbers = [&](const std::string& name, std::vector<double> values, std::size_t rows,
+                             std::size_t columns) {
+      std::size_t shape[2] = {rows, columns};
+      hand(Mat_VarCreate(name.c_str(), MAT_C_DOUBLE, MAT_T_DOUBLE, 2, shape, values.data(), 0), use);
+    };
+    const auto words = [&](const char* name, std::string text) {
+      std::size_t shape[2] = {1, text.size()};
+      hand(Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UTF8, 2, shape, text.data(), 0), use);
+    };
+    for (const auto& [name, values] : of_frame_) numbers(name, values, 1, n_frames_);
+    for (const auto& [name, cells] : moving_) numbers(name, matrix(cells), n_beads_, n_frames_);
+    for (const auto& [name, values] : of_bead_) numbers(name, values, n_beads_, 1);
+    words("length_unit", options_.length_unit);
+    words("time_unit", options_.time_unit);
   }
-  void write(mat_t* file, const std::string& name, std::string text) const {
-    std::size_t shape[2] = {1, text.size()};
-    save(file, Mat_VarCreate(name.c_str(), MAT_C_CHAR, MAT_T_UTF8, 2, shape, text.data(), 0));
+  template <class Use>
+  void hand(matvar_t* made, Use use) const {
+    const Variable variable(made, &Mat_VarFree);
+    if (!variable) fail();
+    use(variable.get());
   }
-  void save(mat_t* file, matvar_t* made) const {
-    const std::unique_ptr<matvar_t, void (*)(matvar_t*)> variable(made, &Mat_VarFree);
-    if (!variable || Mat_VarWrite(file, variable.get(), MAT_COMPRESSION_ZLIB) != 0) fail();
+  [[noreturn]] void fail() const {
+    throw RunError(part_.string() + ": cannot be written in full; is the disk full?");
   }
-  [[noreturn]] void fail() const { throw RunError(part_.string() + ": the file cannot be written."); }
 
   std::filesystem::path part_;
   SnapshotColumns has_;

@@ -3,10 +3,13 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <memory>
+#include <random>
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
@@ -282,6 +285,34 @@ TEST_F(ForeignFormats, DamagedTables) {
   for (const char* time : {"5", "4"})
     EXPECT_EQ(refusal("csv", fmt::format("frame,particle,x,y,time\n0,1,2,-3,5\n1,1,2,-3,{}\n", time), {}),
               fmt::format("f:3: time {} of a frame comes after time 5; times must increase.", time));
+}
+
+TEST_F(ForeignFormats, AFullDiskIsReported) {
+  TrajectoryInfo info;
+  info.n_beads = 100;
+  MemoryTrajectory run(info);
+  std::mt19937_64 random(1);  // numbers that no compression makes shorter
+  std::uniform_real_distribution<double> anywhere(0, 10);
+  for (int f = 0; f < 20; ++f) {
+    Frame frame;
+    frame.step = f;
+    frame.time = f;
+    for (int i = 0; i < 100; ++i) frame.position.emplace_back(anywhere(random), 0, anywhere(random));
+    run.append(frame);
+  }
+  rlimit usual{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &usual), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  for (const ForeignFormat* format : foreign_formats()) {
+    if (format->create == nullptr) continue;
+    const std::filesystem::path place = file().string() + "-" + std::string(format->word);
+    const rlimit limit{.rlim_cur = 4096, .rlim_max = usual.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    EXPECT_THROW(export_trajectory(run, *format, ExportUnits::reduced(info), place, "f"), RunError)
+        << format->word;
+    ::setrlimit(RLIMIT_FSIZE, &usual);
+  }
+  std::signal(SIGXFSZ, handler);
 }
 
 TEST_F(ForeignFormats, UnitsAndSizesThatNoFileIsLikelyToHave) {
