@@ -346,6 +346,12 @@ void warn(const Scene& s, Plan& plan) {
   constexpr double kManySteps = 2e6;
   for (const VoidKey& key : s.void_keys) plan.warnings.push_back(key.text());
   for (const std::string& doubt : warnings_of_record(s.drive)) plan.warnings.push_back(doubt);
+  for (std::size_t k = 0; k < s.drive.harmonics.size(); ++k)
+    if (const double amplitude = s.drive.harmonics[k].amplitude; amplitude > 1)
+      plan.warnings.push_back(
+          fmt::format("harmonic {} of the drive is {:g} times the first; drive.harmonics states amplitudes "
+                      "relative to the first, so that 10 % is 0.1.",
+                      k + 2, amplitude));
   const auto slides_freely = [](const ContactLaws& laws) {
     const auto* dashpot = std::get_if<DashpotSlider>(&laws.tangential);
     return dashpot != nullptr && dashpot->damping.eta(1) == 0;

@@ -621,6 +621,17 @@ TEST(DriveOfAScene, Recorded) {
   EXPECT_LT(fall, 2.3);
 }
 
+// Harmonics are relative to the first: 10 % is 0.1.
+TEST(DriveOfAScene, HarmonicsInPercentAreWarnedOf) {
+  const auto warnings = [](const char* harmonics) {
+    return make_plan(good({std::string("drive.harmonics=") + harmonics})).warnings;
+  };
+  EXPECT_TRUE(warnings("[[0.1, 0.25], [1.0, 0.0]]").empty());
+  const std::vector<std::string> doubts = warnings("[[0.1, 0.25], [10.0, 0.0]]");
+  ASSERT_EQ(doubts.size(), 1U);
+  EXPECT_NE(doubts[0].find("harmonic 3 of the drive is 10 times the first"), std::string::npos) << doubts[0];
+}
+
 TEST(Presets, AreThePapersCells) {
   const Scene horizontal =
       read_scene_text("preset = \"bhateja-2016-horizontal\"\n[drive]\nk_m = 100.0\n", "s");
