@@ -8,12 +8,12 @@
 
 #include "core/median.hpp"
 #include "imaging/locate/locator.hpp"
+#include "imaging/preprocess/straight_bars.hpp"
 
 namespace twincell::imaging {
 namespace {
 
 constexpr int kBorder = 3;     // px; width of the dark border that makes a wall
-constexpr int kBar = 4;        // px; width of a bar that makes a wall
 constexpr int kBefore = 6;     // px; distance from its edges at which a wall shows its own level
 constexpr double kEdge = 3.2;  // half width of an edge, standard deviations of the blur
 // A bead that transmits less than this share of the light hides the edge behind it. With 0.75 the edges of an
@@ -21,123 +21,57 @@ constexpr double kEdge = 3.2;  // half width of an edge, standard deviations of 
 // fitted disc is not.
 constexpr float kLeastShare = 0.97F;
 
-enum class From { left, right, bottom };
-
 /// A line of pixels from the border inwards.
 struct Line {
-  From from;
+  Border from;
   int number;    // row or column
   int wall = 0;  // index of the first pixel of the wall or plate
   int light;     // index of the first light pixel behind it
   int own, end;  // indices between which the wall shows its own level
 };
 
-cv::Point pixel(const cv::Size& size, From from, int number, int i) {
-  return from == From::left    ? cv::Point(i, number)
-         : from == From::right ? cv::Point(size.width - 1 - i, number)
-                               : cv::Point(number, size.height - 1 - i);
-}
-
 /// 0: side wall, 1: plate. The plate is another part and moves, so that level and blur differ.
 int kind_of(const Line& line) {
-  return line.from == From::bottom ? 1 : 0;
+  return line.from == Border::bottom ? 1 : 0;
 }
 
-int length(const cv::Size& size, From from) {
-  return from == From::bottom ? size.height : size.width;
-}
-
-int count(const cv::Size& size, From from) {
-  return from == From::bottom ? size.width : size.height;
-}
-
-std::optional<Line> line_from_border(const cv::Mat1f& d, From from, int number) {
-  const int n = length(d.size(), from);
+std::optional<Line> line_from_border(const cv::Mat1f& d, Border from, int number) {
+  const int n = line_length(from, d.size());
   if (n < 2 * kBorder) return std::nullopt;
   for (int i = 0; i < n; ++i)
-    if (d(pixel(d.size(), from, number, i)) < 0.5F)
+    if (d(pixel_from(from, d.size(), number, i)) < 0.5F)
       return i < kBorder ? std::nullopt
                          : std::optional(Line{
                                .from = from, .number = number, .light = i, .own = 0, .end = i - kBefore});
   return std::nullopt;
 }
 
-/// The first bar of at least kBar dark pixels behind a light border, and the position of its outer side, px.
-std::optional<std::pair<Line, double>> line_from_bar(const cv::Mat1f& d, From from, int number) {
-  const int n = length(d.size(), from);
-  const auto dark = [&](int i) { return d(pixel(d.size(), from, number, i)); };
-  int first = 0;
-  while (first < n && dark(first) < 0.5F) ++first;
-  if (first < kBorder) return std::nullopt;
-  int light = first;
-  while (light < n && dark(light) >= 0.5F) ++light;
-  if (light == n || light - first < kBar) return std::nullopt;
-  const float before = dark(first - 1), rise = dark(first) - before;
-  const double side = first - 1 + static_cast<double>((0.5F - before) / std::max(rise, 1e-6F));
-  return std::pair{
-      Line{.from = from, .number = number, .wall = first, .light = light, .own = first, .end = light}, side};
-}
-
-/// Lines at which a straight bar begins. The rims of beads bend within a diameter; the sides of a wall do
-/// not.
-std::vector<Line> lines_from_bars(const cv::Mat1f& d, From from, double diameter_px) {
-  constexpr double kStraight = 0.4, kSmallest = 8;    // px; a row of smaller beads looks straight
-  constexpr double kShare = 0.8, kCrossed = 1.0 / 3;  // of the lines
-  if (diameter_px < kSmallest) return {};
-  std::vector<std::pair<Line, double>> found;
-  for (int number = 0; number < count(d.size(), from); ++number)
-    if (const auto bar = line_from_bar(d, from, number)) found.push_back(*bar);
-  if (static_cast<double>(found.size()) < kCrossed * count(d.size(), from)) return {};
-  std::vector<Line> straight;
-  std::vector<double> widths;
-  const int reach = std::max(3, cvCeil(diameter_px / 2));
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    const int number = found[k].first.number;
-    std::vector<double> near;
-    for (std::size_t j = k - std::min<std::size_t>(k, static_cast<std::size_t>(reach));
-         j < found.size() && found[j].first.number <= number + reach; ++j)
-      near.push_back(found[j].second);
-    if (std::abs(found[k].second - upper_median(std::move(near))) > kStraight) continue;
-    straight.push_back(found[k].first);
-    widths.push_back(straight.back().light - straight.back().wall);
+/// Lines at which a straight bar begins.
+std::vector<Line> lines_from_bars(const cv::Mat1f& d, Border from, double diameter_px) {
+  std::vector<Line> lines;
+  for (const StraightBar& bar : straight_bars(d, from, diameter_px)) {
+    const int margin = std::clamp(bar.width / 3, 1, kBefore);
+    for (const BarLine& line : bar.lines)
+      lines.push_back({.from = from,
+                       .number = line.number,
+                       .wall = line.first,
+                       .light = line.light,
+                       .own = line.first + margin,
+                       .end = line.first + bar.width - margin});
   }
-  if (static_cast<double>(straight.size()) < kShare * static_cast<double>(found.size())) return {};
-  // A bead that touches the bar from inside seems to widen it, so that the narrow lines show its width.
-  const auto quarter = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 4);
-  std::nth_element(widths.begin(), quarter, widths.end());
-  const int width = static_cast<int>(*quarter), margin = std::clamp(width / 3, 1, kBefore);
-  for (Line& line : straight) line.own = line.wall + margin, line.end = line.wall + width - margin;
-  return straight;
+  return lines;
 }
 
 /// Every row and column at which a wall or the plate may begin.
 std::vector<Line> lines_of(const cv::Mat1f& d, double diameter_px) {
   std::vector<Line> lines;
-  for (const From from : {From::left, From::right, From::bottom}) {
-    for (int number = 0; number < count(d.size(), from); ++number)
+  for (const Border from : {Border::left, Border::right, Border::bottom}) {
+    for (int number = 0; number < line_count(from, d.size()); ++number)
       if (const auto line = line_from_border(d, from, number)) lines.push_back(*line);
     const std::vector<Line> bars = lines_from_bars(d, from, diameter_px);
     lines.insert(lines.end(), bars.begin(), bars.end());
   }
   return lines;
-}
-
-/// Removes discs in a bar or behind it: a bar is too narrow to be recognised as a wall.
-void leave_bars_out(std::vector<Detection>& beads, const std::vector<Line>& lines, const cv::Size& size) {
-  for (const From from : {From::left, From::right, From::bottom}) {
-    std::vector<int> inner(static_cast<std::size_t>(count(size, from)), 0);
-    for (const Line& line : lines)
-      if (line.from == from && line.wall > 0) inner[static_cast<std::size_t>(line.number)] = line.end;
-    std::erase_if(beads, [&](const Detection& b) {
-      const int x = std::clamp(cvRound(b.x), 0, size.width - 1),
-                y = std::clamp(cvRound(b.y), 0, size.height - 1);
-      const int number = from == From::bottom ? x : y;
-      const int index = from == From::left    ? x
-                        : from == From::right ? size.width - 1 - x
-                                              : size.height - 1 - y;
-      return index < inner[static_cast<std::size_t>(number)];
-    });
-  }
 }
 
 double normal_cdf(double x) {
@@ -211,7 +145,7 @@ Surface light_of_walls(const Prepared& image, const std::vector<Line>& lines) {
   double sum = 0, n = 0;
   for (const Line& line : lines)
     for (int i = line.own; i < line.end; ++i) {
-      const cv::Point at = pixel(d.size(), line.from, line.number, i);
+      const cv::Point at = pixel_from(line.from, d.size(), line.number, i);
       wall(at) = 1;
       sum += (1 - static_cast<double>(d(at))) * image.light.dot(surface_basis(at.x, at.y, d.size()));
       ++n;
@@ -228,7 +162,7 @@ bool clipped_black(const cv::Mat1f& d, const std::vector<Line>& lines) {
   double zeros = 0, n = 0;
   for (const Line& line : lines)
     for (int i = line.own; i < line.own + std::min(kBorder, line.light - line.own); ++i, ++n)
-      if (d(pixel(d.size(), line.from, line.number, i)) >= 1) ++zeros;
+      if (d(pixel_from(line.from, d.size(), line.number, i)) >= 1) ++zeros;
   return zeros > kShare * n;
 }
 
@@ -237,8 +171,8 @@ cv::Mat1b inside_of(const std::vector<Line>& lines, const cv::Size& size) {
   constexpr int kInside = 4;
   cv::Mat1b inside(size, uchar{1});
   for (const Line& line : lines)
-    for (int i = 0; i < std::min(length(size, line.from), line.light + kInside); ++i)
-      inside(pixel(size, line.from, line.number, i)) = 0;
+    for (int i = 0; i < std::min(line_length(line.from, size), line.light + kInside); ++i)
+      inside(pixel_from(line.from, size, line.number, i)) = 0;
   return inside;
 }
 
@@ -343,8 +277,7 @@ CellEdges find_cell_edges(const cv::Mat& grey, bool bright, double diameter_px) 
   LocatorOptions locator;
   locator.diameter_px = diameter_px;
   locator.preprocess.bright = bright;
-  Located located = locate(grey, locator);
-  leave_bars_out(located.beads, lines, d.size());
+  const Located located = locate(grey, locator);
   const cv::Mat1f share = light_past_beads(located, d.size());
   const auto background = bright ? clipped_background(grey, d) : std::nullopt;
   const Surface light = background ? *background : light_inside(image, share, inside_of(lines, d.size()));
@@ -359,10 +292,10 @@ CellEdges find_cell_edges(const cv::Mat& grey, bool bright, double diameter_px) 
 
   // Windows: pixels around the step of a line, scaled so that the wall is 0 and the background is 1.
   const auto window_of = [&](const Line& line, double s) {
-    const int reach = static_cast<int>(std::ceil(kEdge * s)) + 1, n = length(d.size(), line.from);
+    const int reach = static_cast<int>(std::ceil(kEdge * s)) + 1, n = line_length(line.from, d.size());
     Window w{.first = std::max({1, line.own, line.light - reach}), .light = {}, .blocked = {}};
     for (int i = w.first; i < std::min(n, line.light + reach); ++i) {
-      const cv::Point at = pixel(d.size(), line.from, line.number, i);
+      const cv::Point at = pixel_from(line.from, d.size(), line.number, i);
       if (share(at) < kLeastShare) break;
       const Surface basis = surface_basis(at.x, at.y, d.size());
       const double b = image.light.dot(basis), level = 1 - light.dot(basis) / b,
@@ -393,9 +326,9 @@ CellEdges find_cell_edges(const cv::Mat& grey, bool bright, double diameter_px) 
     if (!step) continue;
     const double sigma = step->error * noise;
     if (sigma > kLargestError) continue;
-    if (line.from == From::left)
+    if (line.from == Border::left)
       edges.left.push_back({{step->at, double(line.number)}, sigma});
-    else if (line.from == From::right)
+    else if (line.from == Border::right)
       edges.right.push_back({{d.cols - 1 - step->at, double(line.number)}, sigma});
     else
       edges.plate.push_back({{double(line.number), d.rows - 1 - step->at}, sigma});

@@ -5,9 +5,14 @@
 #include <limits>
 #include <vector>
 
+#include "imaging/preprocess/straight_bars.hpp"
+
 namespace twincell::imaging {
 
 namespace {
+
+constexpr double kPlateAt = 0.2;  // beads hide the plate in most columns
+constexpr float kHalf = 0.5F;
 
 double quantile(std::vector<float>& values, double share) {
   const auto at =
@@ -21,12 +26,32 @@ void read_row(const cv::Mat& grey, int y, bool bright, cv::Mat1f& row) {
   grey.row(y).convertTo(row, CV_32F, bright ? -1 : 1);
 }
 
+/// Height of the upper side of a bar above the lowest row; NaN if there is none.
+/// \param light, dark levels, negated where the bar is the bright part
+double bar_height_px(const cv::Mat& grey, bool bright, double light, double dark) {
+  constexpr double kReach = 12;  // px; beads bend within this diameter
+  const double per_level = (bright ? 1 : -1) / (light - dark);
+  cv::Mat1f darkness;
+  grey.convertTo(darkness, CV_32F, per_level, light / (light - dark));
+  std::vector<float> highest;
+  for (const StraightBar& bar : straight_bars(darkness, Border::bottom, kReach)) {
+    std::vector<float> heights;
+    for (const BarLine& line : bar.lines) {
+      const int y = grey.rows - 1 - line.light;
+      const float here = darkness(y, line.number), below = darkness(y + 1, line.number);
+      heights.push_back(static_cast<float>(line.light) - (kHalf - here) / std::max(below - here, 1e-6F));
+    }
+    if (heights.size() > highest.size()) highest = std::move(heights);
+  }
+  return highest.empty() ? std::numeric_limits<double>::quiet_NaN() : quantile(highest, kPlateAt);
+}
+
 }  // namespace
 
 double plate_height_px(const cv::Mat& grey, bool bright) {
   constexpr int kBorder = 3, kSampled = 64;
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kLeastContrast = 0.4, kLightAt = 0.95, kPlateAt = 0.2, kFewestShare = 0.1;
+  constexpr double kLeastContrast = 0.4, kLightAt = 0.95, kFewestShare = 0.1;
   constexpr std::size_t kFewest = 8;
   if (grey.rows < 2 * kBorder || grey.cols < static_cast<int>(kFewest)) return kNaN;
   // Levels: the light is the upper end of the values of some rows, the plate the middle of the lowest rows.
@@ -43,7 +68,8 @@ double plate_height_px(const cv::Mat& grey, bool bright) {
   }
   const double light = quantile(all, kLightAt), dark = quantile(all, 1 - kLightAt),
                plate = quantile(lowest, 0.5);
-  if (!(light - plate > kLeastContrast * (light - dark)) || !(light > dark)) return kNaN;
+  if (!(light > dark)) return kNaN;
+  if (!(light - plate > kLeastContrast * (light - dark))) return bar_height_px(grey, bright, light, dark);
   const auto half = static_cast<float>(0.5 * (light + plate));
   // Columns: distance of the first crossing from below.
   const auto columns = static_cast<std::size_t>(grey.cols);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "imaging/disc/ring_normal_equations.hpp"
+#include "imaging/preprocess/straight_bars.hpp"
 
 namespace twincell::imaging {
 
@@ -136,6 +137,11 @@ void trim_bumps(cv::Mat1b& regions, const cv::Mat1b& surely_inside, double disc_
   regions &= (opened(1, width) & opened(width, 1)) | surely_inside;
 }
 
+/// Includes the blurred edge of regions.
+void include_edge(cv::Mat1b& regions) {
+  cv::dilate(regions, regions, cv::Mat(), cv::Point(-1, -1), 2);
+}
+
 // Morphological opening of the dark region by a disc, through two distance maps, at reduced resolution. The
 // opening is a few pixels too large or too small, but only within the dark region. The frame is continued
 // beyond its border, so that a thin strip of plate at the bottom of a frame counts as thick. Empty if there
@@ -204,7 +210,7 @@ cv::Mat1b regions_darker_than(float limit, const cv::Mat1f& darkness, double dis
   };
   cv::Mat1b regions = at_full_size(distance < reach + (shrink > 1 ? 1 : 0)) & dark_pixels;
   trim_bumps(regions, at_full_size(distance < 0.5 * reach), disc_radius_px);
-  cv::dilate(regions, regions, cv::Mat(), cv::Point(-1, -1), 2);  // includes their blurred edge
+  include_edge(regions);
   return regions;
 }
 
@@ -219,10 +225,11 @@ cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double radius_px, double
   // Distances from an edge to either side, in units of the blur.
   constexpr double kTail = 2, kFromDark = 0.7, kFromDarkest = 1.55;
   cv::Mat1b regions = regions_darker_than(kDark, darkness, in_radii * radius_px);
-  if (regions.empty()) return regions;
+  cv::Mat1b bars = straight_bars(darkness, 2 * radius_px, 2 * in_radii * radius_px);
+  if (regions.empty() && bars.empty()) return {};
   const double blur = blur_of(darkness);
   double beside = (kTail + kFromDark) * blur;
-  if (blur > std::max(kSharp, kOutOfFocus * radius_px)) {
+  if (!regions.empty() && blur > std::max(kSharp, kOutOfFocus * radius_px)) {
     cv::Mat1f smooth;
     cv::GaussianBlur(darkness, smooth, {0, 0}, kSmooth);
     std::vector<float> levels;
@@ -235,6 +242,10 @@ cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double radius_px, double
     std::nth_element(levels.begin(), at, levels.end());
     regions = regions_darker_than(kOfDarkest * *at, smooth, in_radii * radius_px);
     beside = (kTail + kFromDarkest) * blur;
+  }
+  if (!bars.empty()) {
+    include_edge(bars);
+    regions = regions.empty() ? bars : cv::Mat1b(regions | bars);
   }
   const int wide = 2 * std::max(0, cvCeil(beside) - 2) + 1;
   if (!regions.empty() && wide > 1)

@@ -35,8 +35,9 @@ struct Prepared {
       Surface::Zero();  ///< B, grey levels: quadratic surface through the light that reaches the camera
   cv::Mat1f darkness;   ///< d = 1 - I/B: 0 in full light, about 1 in an opaque disc; each row is followed by
                         ///< kSpareColumns floats kUnseen
-  cv::Mat1b opaque;     ///< 255 on walls, plate and other dark regions too large to be beads, and within two
-                        ///< pixels of them; empty if there is no such region
+  cv::Mat1b opaque;     ///< 255 on walls, plate and other dark regions too large to be beads, on straight
+                        ///< bars (straight_bars.hpp), and within two pixels of them; empty if there is no
+                        ///< such region
 };
 
 /// Darkness of the discs relative to the background: the mean of the darker of the two classes that Otsu's

@@ -1,0 +1,171 @@
+#include "imaging/preprocess/straight_bars.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/median.hpp"
+#include "imaging/preprocess/preprocess.hpp"
+
+namespace twincell::imaging {
+
+cv::Point pixel_from(Border border, cv::Size size, int line, int i) {
+  switch (border) {
+    case Border::left:
+      return {i, line};
+    case Border::right:
+      return {size.width - 1 - i, line};
+    case Border::bottom:
+      return {line, size.height - 1 - i};
+    case Border::top:
+      break;
+  }
+  return {line, i};
+}
+
+int line_length(Border border, cv::Size size) {
+  return border == Border::bottom || border == Border::top ? size.height : size.width;
+}
+
+int line_count(Border border, cv::Size size) {
+  return border == Border::bottom || border == Border::top ? size.width : size.height;
+}
+
+namespace {
+
+constexpr int kLight = 3;             // px; least width of the light behind a bar
+constexpr int kThinnest = 4;          // px
+constexpr float kDark = 0.5F;         // least darkness
+constexpr double kStraight = 0.4;     // px; largest distance from the local median of the outer side
+constexpr double kShare = 0.8;        // of the lines along a bar are straight
+constexpr double kCrossed = 1.0 / 3;  // of the lines of a side cross a bar
+constexpr double kLength = 4;         // bead diameters
+
+/// The first dark run behind a light border.
+std::optional<BarLine> bar_line(const cv::Mat1f& d, Border border, int number) {
+  const cv::Point start = pixel_from(border, d.size(), number, 0),
+                  next = pixel_from(border, d.size(), number, 1);
+  const auto step = (next.y - start.y) * static_cast<std::ptrdiff_t>(d.step1()) + (next.x - start.x);
+  const float* const from = &d(start);
+  const int n = line_length(border, d.size());
+  int first = 0;
+  const float* at = from;
+  for (; first < n && *at < kDark; ++first) at += step;
+  if (first < kLight) return std::nullopt;
+  int light = first;
+  for (; light < n && *at >= kDark; ++light) at += step;
+  if (light == n || light - first < kThinnest) return std::nullopt;
+  const float before = from[(first - 1) * step], rise = from[first * step] - before;
+  return BarLine{.number = number,
+                 .first = first,
+                 .light = light,
+                 .side = first - 1 + static_cast<double>((kDark - before) / std::max(rise, 1e-6F))};
+}
+
+/// The lines at which the outer side is straight: it lies at the median of its neighbours within a radius.
+std::vector<BarLine> straight_lines(const std::vector<BarLine>& found, int reach) {
+  std::vector<BarLine> straight;
+  std::vector<double> near;
+  std::size_t begin = 0, end = 0;
+  for (const BarLine& line : found) {
+    while (found[begin].number < line.number - reach) ++begin;
+    while (end < found.size() && found[end].number <= line.number + reach) ++end;
+    near.clear();
+    for (std::size_t j = begin; j < end; ++j) near.push_back(found[j].side);
+    if (std::abs(line.side - upper_median(near)) <= kStraight) straight.push_back(line);
+  }
+  return straight;
+}
+
+/// A bead that touches the bar from inside seems to widen it, so that the narrow lines show its width.
+int width_of(const std::vector<BarLine>& lines) {
+  std::vector<int> widths;
+  for (const BarLine& line : lines) widths.push_back(line.light - line.first);
+  const auto quarter = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 4);
+  std::nth_element(widths.begin(), quarter, widths.end());
+  return *quarter;
+}
+
+}  // namespace
+
+std::vector<StraightBar> straight_bars(const cv::Mat1f& d, Border border, double diameter_px) {
+  constexpr double kSmallest = 8, kSmallestInBlurs = 6;
+  constexpr int kSampled = 8;  // most pictures have no bars, as a few lines show
+  constexpr double kSteepest = 0.1;
+  const int count = line_count(border, d.size());
+  if (diameter_px < kSmallest || line_length(border, d.size()) < 2 * kLight) return {};
+  const double shortest = std::max(kLength * diameter_px, kCrossed * count);
+  int sampled = 0;
+  for (int number = kSampled / 2; number < count; number += kSampled)
+    sampled += bar_line(d, border, number) ? 1 : 0;
+  if (sampled * kSampled < kShare * shortest - kSampled) return {};
+  std::vector<BarLine> found;
+  for (int number = 0; number < count; ++number)
+    if (const auto line = bar_line(d, border, number)) found.push_back(*line);
+  const int reach = std::max(3, static_cast<int>(std::ceil(diameter_px / 2)));
+  const std::vector<BarLine> straight = straight_lines(found, reach);
+  // Bars: lines that continue each other.
+  std::vector<StraightBar> bars;
+  for (std::size_t first = 0, next = 0; first < straight.size(); first = next) {
+    for (next = first + 1; next < straight.size(); ++next) {
+      const BarLine &before = straight[next - 1], &here = straight[next];
+      const int gap = here.number - before.number;
+      if (gap > reach || std::abs(here.side - before.side) > 2 * kStraight + kSteepest * gap) break;
+    }
+    const int length = straight[next - 1].number - straight[first].number + 1;
+    if (length < shortest || static_cast<double>(next - first) < kShare * length) continue;
+    StraightBar bar{.border = border,
+                    .lines = {straight.begin() + static_cast<std::ptrdiff_t>(first),
+                              straight.begin() + static_cast<std::ptrdiff_t>(next)}};
+    bar.width = width_of(bar.lines);
+    bars.push_back(std::move(bar));
+  }
+  if (!bars.empty() && diameter_px < kSmallestInBlurs * blur_of(d)) return {};
+  return bars;
+}
+
+namespace {
+
+void mark(const StraightBar& bar, const cv::Mat1f& d, cv::Mat1b& marked) {
+  const int n = line_length(bar.border, d.size()), count = line_count(bar.border, d.size());
+  const auto set = [&](int number, int from, int to, bool only_dark) {
+    for (int i = std::max(0, from); i < std::min(n, to); ++i)
+      if (const cv::Point at = pixel_from(bar.border, d.size(), number, i); !only_dark || d(at) >= kDark)
+        marked(at) = 255;
+  };
+  // Lines at which a grain of dust or a bead hides the outer side lie between others.
+  for (std::size_t k = 0; k < bar.lines.size(); ++k) {
+    const int end = k + 1 < bar.lines.size() ? bar.lines[k + 1].number : bar.lines[k].number + 1;
+    for (int number = bar.lines[k].number; number < end; ++number)
+      set(number, bar.lines[k].first, bar.lines[k].first + bar.width, false);
+  }
+  // Ends: as far as a semicircle reaches.
+  constexpr int kBeyond = 2;  // px
+  const double half = 0.5 * bar.width;
+  for (const bool up : {false, true}) {
+    const BarLine& last = up ? bar.lines.back() : bar.lines.front();
+    for (int t = 1; t < half + kBeyond; ++t) {
+      const int number = up ? last.number + t : last.number - t;
+      if (number < 0 || number >= count) break;
+      const double along = std::max(0, t - kBeyond);
+      const double side = std::sqrt(std::max(0.0, half * half - along * along));
+      set(number, static_cast<int>(std::lround(last.first + half - side)),
+          static_cast<int>(std::lround(last.first + half + side)), true);
+    }
+  }
+}
+
+}  // namespace
+
+cv::Mat1b straight_bars(const cv::Mat1f& darkness, double diameter_px, double thickest_px) {
+  cv::Mat1b marked;
+  for (const Border border : {Border::left, Border::right, Border::bottom, Border::top})
+    for (const StraightBar& bar : straight_bars(darkness, border, diameter_px)) {
+      if (bar.width > thickest_px) continue;
+      if (marked.empty()) marked = cv::Mat1b(darkness.size(), uchar{0});
+      mark(bar, darkness, marked);
+    }
+  return marked;
+}
+
+}  // namespace twincell::imaging
