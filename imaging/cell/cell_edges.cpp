@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "core/median.hpp"
 #include "imaging/locate/locator.hpp"
@@ -24,10 +25,11 @@ constexpr float kLeastShare = 0.97F;
 /// A line of pixels from the border inwards.
 struct Line {
   Border from;
-  int number;    // row or column
-  int wall = 0;  // index of the first pixel of the wall or plate
-  int light;     // index of the first light pixel behind it
-  int own, end;  // indices between which the wall shows its own level
+  int number;     // row or column
+  int wall = 0;   // index of the first pixel of the wall or plate
+  int light;      // index of the first light pixel behind it
+  int own, end;   // indices between which the wall shows its own level
+  int inner = 0;  // index of the first pixel behind a bar, whether light or a bead that touches it
 };
 
 /// 0: side wall, 1: plate. The plate is another part and moves, so that level and blur differ.
@@ -57,19 +59,35 @@ std::vector<Line> lines_from_bars(const cv::Mat1f& d, Border from, double diamet
                        .wall = line.first,
                        .light = line.light,
                        .own = line.first + margin,
-                       .end = line.first + bar.width - margin});
+                       .end = line.first + bar.width - margin,
+                       .inner = line.first + bar.width});
   }
   return lines;
 }
 
+/// Columns between the side bars. Those within a bar show its end, not the plate.
+std::pair<int, int> columns_between(const std::vector<Line>& side_bars, int columns) {
+  std::pair<int, int> between{0, columns};
+  for (const Line& line : side_bars)
+    if (line.from == Border::left)
+      between.first = std::max(between.first, line.inner);
+    else
+      between.second = std::min(between.second, columns - line.inner);
+  return between;
+}
+
 /// Every row and column at which a wall or the plate may begin.
 std::vector<Line> lines_of(const cv::Mat1f& d, double diameter_px) {
-  std::vector<Line> lines;
+  std::vector<Line> lines, bars;
   for (const Border from : {Border::left, Border::right, Border::bottom}) {
+    const std::pair<int, int> between =
+        from == Border::bottom ? columns_between(bars, d.cols) : std::pair{0, line_count(from, d.size())};
+    std::vector<Line> found = lines_from_bars(d, from, diameter_px);
+    bars.insert(bars.end(), found.begin(), found.end());
     for (int number = 0; number < line_count(from, d.size()); ++number)
-      if (const auto line = line_from_border(d, from, number)) lines.push_back(*line);
-    const std::vector<Line> bars = lines_from_bars(d, from, diameter_px);
-    lines.insert(lines.end(), bars.begin(), bars.end());
+      if (const auto line = line_from_border(d, from, number)) found.push_back(*line);
+    for (const Line& line : found)
+      if (line.number >= between.first && line.number < between.second) lines.push_back(line);
   }
   return lines;
 }

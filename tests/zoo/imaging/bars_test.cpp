@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "imaging/benchmark/score.hpp"
+#include "imaging/cell/cell_edges.hpp"
 #include "imaging/cell/plate_row.hpp"
 #include "imaging/locate/locator.hpp"
 #include "imaging/preprocess/straight_bars.hpp"
@@ -35,6 +36,7 @@ struct Bar {
 struct Cell {
   double diameter = 22, thickness = 12, tilt_degrees = 0, plate_px = 0;
   bool round = false, bright = false;
+  bool through_border = false;  // walls run out of the picture, below
   double light = kLight, dark = 20;
 };
 
@@ -58,7 +60,8 @@ Scene scene_of(const Cell& cell) {
   const double cap = cell.round ? 0.5 * t : 0;
   Scene scene;
   for (const double x : {left - 0.5 * t, left + width + 0.5 * t})
-    scene.bars.push_back({turned(x, 14 + cap), turned(x, side - 12 - cap), t, cell.round});
+    scene.bars.push_back(
+        {turned(x, 14 + cap), turned(x, cell.through_border ? side + t : side - 12 - cap), t, cell.round});
   scene.bars.push_back({turned(left + 1 + cap, plate + 0.5 * t),
                         turned(left + width - 1 - cap, plate + 0.5 * t), t, cell.round});
   Places places;
@@ -149,6 +152,17 @@ TEST(BarsOnly, RowsOfBeadsAreNotBars) {
         const imaging::Prepared image = imaging::prepare(grey, {}, d / 2);
         EXPECT_TRUE(image.opaque.empty()) << d << " px, blur " << blur << ", tilt " << tilt;
       }
+}
+
+// A wall that runs through the lower border has its end there, which is no plate.
+TEST(BarsOnly, WallsThroughTheLowerBorderHaveEdges) {
+  for (const double tilt : {0.0, 1.0, -2.0}) {
+    const Scene scene = scene_of({.thickness = 22, .tilt_degrees = tilt, .through_border = true});
+    const imaging::CellEdges edges = imaging::find_cell_edges(scene.exhibit.picture, false, 22);
+    EXPECT_GE(edges.left.size(), 40U) << tilt;
+    EXPECT_GE(edges.right.size(), 40U) << tilt;
+    EXPECT_GE(edges.plate.size(), 40U) << tilt;
+  }
 }
 
 // The upper side of a moving bar, seen between beads.
