@@ -175,6 +175,7 @@ void run(LocateOptions& o, const Common& common) {
   text += located_frames.unproven_motion();
   text += found_settings_text(given, locator, settings_frame,
                               o.explain ? settings_table(choice, refine) : of_settings);
+  if (refine != locator.refine.method) text += located_frames.overlaps();
   text += doubts + o.output + "\n";
   if (view) text += o.view + "\n";
   print_result(common, document, text + located_frames.score_text());

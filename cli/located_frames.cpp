@@ -15,14 +15,16 @@ namespace {
 
 constexpr const char* kCandidateHeading = "frame,x,y,radius,darkness,interior,score,ring_share,verdict\n";
 constexpr const char* kBeadHeading =
-    "y,x,mass,size,ecc,signal,raw_mass,ep,frame,radius,sigma_x,sigma_y,sigma_radius,score,tracer,edge\n";
+    "y,x,mass,size,ecc,signal,raw_mass,ep,frame,radius,sigma_x,sigma_y,sigma_radius,score,tracer,edge,"
+    "overlap\n";
 
 std::string bead_row(const imaging::Detection& b, std::int64_t frame) {
   const double ep = imaging::position_error(b);
   return fmt::format(
-      "{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.2f},{:.5f},{},{:.4f},{:.5f},{:.5f},{:.5f},{:.4f},{},{}\n",
+      "{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.2f},{:.5f},{},{:.4f},{:.5f},{:.5f},{:.5f},{:.4f},{},{},{}"
+      "\n",
       b.y, b.x, b.mass, b.size, b.ecc, b.signal, b.raw_mass, ep, frame, b.radius, b.sigma_x, b.sigma_y,
-      b.sigma_radius, b.score, b.tracer ? 1 : 0, b.edge ? 1 : 0);
+      b.sigma_radius, b.score, b.tracer ? 1 : 0, b.edge ? 1 : 0, b.overlap ? 1 : 0);
 }
 
 std::string candidate_row(const imaging::Detection& b, std::int64_t frame) {
@@ -85,6 +87,7 @@ void LocatedFrames::add(std::int64_t frame, const imaging::Located& located) {
   for (const imaging::Detection& b : located.dropped) ++record.dropped[b.verdict];
   for (const auto& [why, count] : record.dropped) left_out_[why] += count;
   beads_ += located.beads.size();
+  for (const imaging::Detection& b : located.beads) overlapping_ += b.overlap ? 1 : 0;
   bare_ += located.beads.empty() ? 1 : 0;
   records_.push_back(std::move(record));
   motion_.add(located);
@@ -127,6 +130,15 @@ std::string LocatedFrames::unproven_motion() const {
       counted(unproven, "frame"),
       frames() == 1 ? "one frame does not show how beads move"
                     : "the beads do not move that far from frame to frame");
+}
+
+std::string LocatedFrames::overlaps() const {
+  if (overlapping_ == 0) return {};
+  return fmt::format(
+      "discs overlap in projection, as in two layers: {} of {} do so and are marked, and those that others "
+      "hide are "
+      "missing (--refine overlapping)\n",
+      overlapping_, counted(beads_, "bead"));
 }
 
 std::string LocatedFrames::doubts() const {

@@ -60,6 +60,8 @@ class LocatedFrames {
   [[nodiscard]] std::string lines() const;
   /// A sentence if frames are blurred along one direction without evidence of motion; otherwise empty.
   [[nodiscard]] std::string unproven_motion() const;
+  /// A sentence if discs overlap in projection; otherwise empty.
+  [[nodiscard]] std::string overlaps() const;
   /// Warnings: frames without beads, and candidates that were left out if they are many. Empty if there is no
   /// reason for doubt.
   [[nodiscard]] std::string doubts() const;
@@ -86,7 +88,7 @@ class LocatedFrames {
   imaging::MotionInExposure motion_;
   std::vector<Record> records_;
   std::map<imaging::Verdict, std::size_t> left_out_;
-  std::size_t beads_ = 0, bare_ = 0;  ///< bare: frames without a bead
+  std::size_t beads_ = 0, overlapping_ = 0, bare_ = 0;  ///< bare: frames without a bead
 };
 
 }  // namespace twincell::cli

@@ -45,13 +45,14 @@ constexpr BeadColumn kColumns[] = {
     {"score", [](const imaging::Detection& b) { return b.score; }},
     {"tracer", nullptr},
     {"edge", nullptr},
+    {"overlap", nullptr},
 };
 
 /// The beads of all frames.
 struct Beads {
   std::vector<std::vector<double>> columns{std::size(kColumns)};  ///< as kColumns; empty where `of` is null
   std::vector<std::int64_t> frame;
-  std::vector<std::uint8_t> tracer, edge;
+  std::vector<std::uint8_t> tracer, edge, overlap;
 };
 
 struct FrameReport {
@@ -152,6 +153,7 @@ py::object locate_beads_of(const py::object& stack, const imaging::LocatingReque
             beads.frame.push_back(frame);
             beads.tracer.push_back(b.tracer ? 1 : 0);
             beads.edge.push_back(b.edge ? 1 : 0);
+            beads.overlap.push_back(b.overlap ? 1 : 0);
           }
           motion.add(located);
           FrameReport report{located.beads.size(), located.blur_px, {}};
@@ -170,7 +172,8 @@ py::object locate_beads_of(const py::object& stack, const imaging::LocatingReque
     columns[py::str(name)] = kColumns[c].of != nullptr ? array_of(std::move(beads.columns[c]))
                              : name == "frame"         ? array_of(std::move(beads.frame))
                              : name == "tracer"        ? array_of(std::move(beads.tracer))
-                                                       : array_of(std::move(beads.edge));
+                             : name == "edge"          ? array_of(std::move(beads.edge))
+                                                       : array_of(std::move(beads.overlap));
   }
   // The options with which the same beads are found again.
   py::list diameters;

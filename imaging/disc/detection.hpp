@@ -63,6 +63,7 @@ struct Detection {
   double ecc = 0;                   ///< eccentricity of the darkness from its second moments, 0: round
   Verdict verdict = Verdict::bead;
   bool edge = false;         ///< cut by the frame
+  bool overlap = false;      ///< overlaps another bead in projection
   bool tracer = false;       ///< interior clearly brighter than that of the other beads
   double tracer_margin = 0;  ///< distance of its interior from the limit, in scatters of the other beads
 };

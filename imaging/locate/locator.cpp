@@ -13,6 +13,7 @@
 #include "core/error.hpp"
 #include "core/median.hpp"
 #include "imaging/locate/picture_orientation.hpp"
+#include "imaging/refine/overlapping_fit.hpp"
 #include "imaging/refine/size_assignment.hpp"
 #include "imaging/refine/unlike_discs.hpp"
 
@@ -112,7 +113,8 @@ std::vector<Proposal> propose_all(const Prepared& image, const LocatorOptions& o
   FindOptions wanted = options.find;
   // A proposal of the wrong size must not suppress its neighbours.
   constexpr double kApart = 0.2;
-  if (choose) wanted.apart = kApart;
+  const bool overlapping = options.refine.method == kOverlappingRefiner.word;
+  if (choose || overlapping) wanted.apart = kApart;
   wanted.radius_px = options.diameter_px / 2;
   std::vector<Proposal> all = propose_at_scale(options.finder, image, wanted);
   for (const double other : options.other_diameters_px) {
@@ -120,7 +122,7 @@ std::vector<Proposal> propose_all(const Prepared& image, const LocatorOptions& o
     const std::vector<Proposal> more = propose_at_scale(options.finder, image, wanted);
     all.insert(all.end(), more.begin(), more.end());
   }
-  return choose ? assign_sizes(image, all) : all;
+  return choose && !overlapping ? assign_sizes(image, all) : all;
 }
 
 /// Scales the radii so that a disc as large as the profile has the radius of the profile's rim.
@@ -164,6 +166,9 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
     judged.tracer_below = 0;
   // With a shared profile the interior of a disc may have any darkness.
   if (refiner.model == DiscModel::shared_profile) judged.min_interior = -HUGE_VAL;
+  // Of two discs of different layers, nearly all of one may be hidden.
+  constexpr double kBehind = 1.75;
+  if (options.refine.method == kOverlappingRefiner.word) judged.max_overlap = kBehind;
   judged.other_radii_px = refined.other_radii_px;
   result.judged = judge(result.refined.beads, radius, grey.cols, grey.rows, judged);
   if (judged.drop_unlike && some_may_be_unlike(result.judged.beads)) {

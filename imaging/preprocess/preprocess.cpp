@@ -369,6 +369,7 @@ Prepared prepare(const cv::Mat& grey, const PreprocessOptions& options, double r
   const Rows image(grey, options.bright);
   const cv::Size size = image.size();
   Prepared p;
+  p.unit = options.contrast;
   p.light = bright_envelope(image);
   cv::Mat1f with_spare(size.height, size.width + kSpareColumns);
   with_spare.colRange(size.width, with_spare.cols).setTo(kUnseen);

@@ -38,6 +38,7 @@ struct Prepared {
   cv::Mat1b opaque;     ///< 255 on walls, plate and other dark regions too large to be beads, on straight
                         ///< bars (straight_bars.hpp), and within two pixels of them; empty if there is no
                         ///< such region
+  double unit = 1;      ///< share of the light that darkness 1 blocks: PreprocessOptions::contrast
 };
 
 /// Darkness of the discs relative to the background: the mean of the darker of the two classes that Otsu's

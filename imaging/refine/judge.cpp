@@ -72,6 +72,19 @@ std::size_t separate_population(const std::vector<double>& sorted, double limit)
   return split;
 }
 
+/// Flags beads that overlap another one by more than discs of one layer do.
+void flag_overlaps(std::vector<Detection>& beads) {
+  const double one_layer = JudgeOptions{}.max_overlap;
+  std::vector<Disc> discs;
+  discs.reserve(beads.size());
+  for (const Detection& b : beads) discs.push_back({b.x, b.y, b.radius, 1});
+  for (const auto& [i, j] : near_pairs(discs, 0)) {
+    Detection &a = beads[static_cast<std::size_t>(i)], &b = beads[static_cast<std::size_t>(j)];
+    if (std::hypot(a.x - b.x, a.y - b.y) < a.radius + b.radius - one_layer * std::min(a.radius, b.radius))
+      a.overlap = b.overlap = true;
+  }
+}
+
 void flag_tracers(std::vector<Detection>& beads, double below) {
   if (beads.empty()) return;
   std::vector<double> interior;
@@ -117,6 +130,7 @@ Judged judge(std::vector<Detection> candidates, double radius_px, int width, int
              b.y + b.radius > height - 0.5;
     (b.verdict == Verdict::bead ? judged.beads : judged.dropped).push_back(b);
   }
+  if (options.max_overlap > JudgeOptions{}.max_overlap) flag_overlaps(judged.beads);
   flag_tracers(judged.beads, options.tracer_below);
   return judged;
 }

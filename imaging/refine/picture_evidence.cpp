@@ -68,6 +68,7 @@ class Explanation {
     amplitude_.assign(discs.size(), 1);
     offset_.assign(discs.size(), 0);
     share_pixels();
+    one_layer_ = std::none_of(discs.begin(), discs.end(), [](const Detection& d) { return d.overlap; });
     collect_terms();
   }
 
@@ -93,6 +94,13 @@ class Explanation {
       for (int x = std::max(0, cvCeil(d.x - half)); x <= std::min(grey_.cols - 1, cvFloor(d.x + half)); ++x)
         use(x, y, std::sqrt((x - d.x) * (x - d.x) + dy * dy) - d.radius);
     }
+  }
+  /// Where discs overlap in projection, a pixel shows only the disc that it belongs to.
+  template <class Use>
+  void over_shown(std::size_t b, Use&& use) const {
+    over(discs_[b], [&](int x, int y, double out) {
+      if (one_layer_ || owner_(y, x) == static_cast<int>(b)) use(x, y, out);
+    });
   }
   /// The place in the profile at r - R. The innermost level serves a disc that is larger than its size.
   [[nodiscard]] Place place(const Size& s, double out) const {
@@ -120,14 +128,14 @@ class Explanation {
   /// The levels of which each pixel is the sum, from all discs that reach it.
   void collect_terms() {
     first_term_.assign(grey_.total() + 1, 0);
-    for (const Detection& d : discs_)
-      over(d, [&](int x, int y, double) { first_term_[pixel_at(x, y) + 1] += 2; });
+    for (std::size_t b = 0; b < discs_.size(); ++b)
+      over_shown(b, [&](int x, int y, double) { first_term_[pixel_at(x, y) + 1] += 2; });
     std::partial_sum(first_term_.begin(), first_term_.end(), first_term_.begin());
     terms_.resize(first_term_.back());
     std::vector<std::size_t> next(first_term_.begin(), first_term_.end() - 1);
     for (std::size_t b = 0; b < discs_.size(); ++b) {
       const Size& s = sizes_[size_of_[b]];
-      over(discs_[b], [&](int x, int y, double out) {
+      over_shown(b, [&](int x, int y, double out) {
         const Place p = place(s, out);
         const auto level = static_cast<Eigen::Index>(s.first + p.k);
         std::size_t& at = next[pixel_at(x, y)];
@@ -187,7 +195,7 @@ class Explanation {
     model_ = cv::Mat1f::zeros(grey_.size());
     for (std::size_t b = 0; b < discs_.size(); ++b) {
       const Size& s = sizes_[size_of_[b]];
-      over(discs_[b], [&](int x, int y, double out) {
+      over_shown(b, [&](int x, int y, double out) {
         const Place p = place(s, out);
         model_(y, x) += static_cast<float>((1 - p.part) * s.level[p.k] + p.part * s.level[p.k + 1]);
       });
@@ -372,6 +380,7 @@ class Explanation {
   double noise_;
   std::vector<Size> sizes_;
   std::size_t levels_ = 0;
+  bool one_layer_ = true;
   std::vector<std::size_t> size_of_;
   std::vector<double> amplitude_, offset_;
   std::vector<std::size_t> first_term_;  // of each pixel in terms_

@@ -11,7 +11,8 @@
 ///
 /// With discs, a pixel within 2.5 px of a disc or inside it belongs to the disc b whose rim is nearest:
 ///     I(p) = o_b + a_b sum_k f(r_k - R_k).
-/// The radial profile f is common to the discs of one size and is learnt from the picture, as is the scale
+/// Where discs overlap in projection (Detection::overlap), the sum has the term of b alone. The radial
+/// profile f is common to the discs of one size and is learnt from the picture, as is the scale
 /// s_1 of the residual e_1 at each r - R. Where the profile describes the picture worse than the
 /// neighbourhood does, summed over all discs of a size (as inside patterned discs), it is not used.
 ///

@@ -1,5 +1,6 @@
 #include "core/choice.hpp"
 #include "imaging/refine/edge_fit.hpp"
+#include "imaging/refine/overlapping_fit.hpp"
 #include "imaging/refine/picture_fit.hpp"
 #include "imaging/refine/profile_fit.hpp"
 #include "imaging/refine/refiner.hpp"
@@ -9,7 +10,7 @@ namespace twincell::imaging {
 namespace {
 
 // The list of refiners; the first is the default.
-constexpr std::array kRefiners = {kExactRefiner, kFastRefiner, kEdgeRefiner, kProfileRefiner};
+constexpr std::array kRefiners = {kExactRefiner, kFastRefiner, kEdgeRefiner, kProfileRefiner, kOverlappingRefiner};
 
 }  // namespace
 

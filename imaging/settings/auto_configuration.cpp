@@ -13,6 +13,7 @@
 #include "imaging/find/vote_finder.hpp"
 #include "imaging/locate/picture_orientation.hpp"
 #include "imaging/refine/edge_fit.hpp"
+#include "imaging/refine/overlapping_fit.hpp"
 #include "imaging/refine/picture_fit.hpp"
 #include "imaging/refine/profile_fit.hpp"
 #include "imaging/settings/find_contrast.hpp"
@@ -319,8 +320,11 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   if (winner.method != kEdgeRefiner.word && winner.other_diameters_px.empty()) {
     if (auto mixed = find_polydisperse(grey, given, all, winner)) more.push_back(*mixed);
     if (given.refine.method == kExactRefiner.word) {
+      const bool plain = completed(winner, given).refine.method == kExactRefiner.word;
       winner.method = kEdgeRefiner.word;
       more.push_back(winner);
+      winner.method = kOverlappingRefiner.word;
+      if (plain) more.push_back(winner);
     }
   }
   return with(more);

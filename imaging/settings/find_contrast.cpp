@@ -1,5 +1,6 @@
 #include "imaging/settings/find_contrast.hpp"
 
+#include "imaging/refine/overlapping_fit.hpp"
 #include "imaging/settings/hypothesis_test.hpp"
 
 namespace twincell::imaging {
@@ -9,7 +10,8 @@ double find_contrast(const cv::Mat& grey, const LocatorOptions& options) {
   plain.contrast = 1;
   if (model_of(options.refine) == DiscModel::shared_profile) return 1;
   const double contrast = contrast_of(prepare(grey, plain, options.diameter_px / 2).darkness);
-  if (model_of(options.refine) == DiscModel::circle) return contrast;
+  if (model_of(options.refine) == DiscModel::circle || options.refine.method == kOverlappingRefiner.word)
+    return contrast;
   if (contrast >= kPale) return 1;
   const cv::Mat part = busiest(grey, kExaminedSide);
   const auto explained = [&](double by) {

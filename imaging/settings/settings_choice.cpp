@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/in_parallel.hpp"
+#include "imaging/refine/overlapping_fit.hpp"
 #include "imaging/refine/picture_evidence.hpp"
 #include "imaging/refine/profile_fit.hpp"
 #include "imaging/refine/rim_shift.hpp"
@@ -33,6 +34,10 @@ bool same_sizes(const FoundSettings& a, const FoundSettings& b, double tolerance
 
 bool is_profile(const TriedSettings& tried) {
   return tried.settings.method == kProfileRefiner.word;
+}
+
+bool is_overlapping(const TriedSettings& tried) {
+  return tried.settings.method == kOverlappingRefiner.word;
 }
 
 bool agree(const FoundSettings& a, const FoundSettings& b) {
@@ -149,7 +154,10 @@ std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const Loca
 
 SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
   constexpr double kDiscs = 3, kTimesArea = 2;
-  const auto sizes = [](const TriedSettings& t) { return t.settings.other_diameters_px.size(); };
+  // Discs that may overlap can explain more, like discs of further sizes.
+  const auto sizes = [](const TriedSettings& t) {
+    return t.settings.other_diameters_px.size() + (is_overlapping(t) ? 1 : 0);
+  };
   for (TriedSettings& t : tried) t.not_chosen = is_round(t) ? "" : "not round: " + roundness_in_words(t);
   // Preferred ones first, then those that are not round.
   const auto end = std::stable_partition(tried.begin(), tried.end(), is_round);
@@ -167,7 +175,8 @@ SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
     // Marks on the ground may be discs too, and more of them than there are beads.
     if (sizes(*first) < sizes(*best)) {
       if (first->evidence > best->evidence - kDiscs * share)
-        reason = "a further size gains less than three discs";
+        reason = is_overlapping(*best) ? "a further layer gains less than three discs"
+                                       : "a further size gains less than three discs";
     } else if (clearly * first->evidence > best->evidence) {
       reason = fmt::format("less than {:g} times the evidence of the preferred ones{}", clearly,
                            clearly > kClearly ? ", for the gaps of a crystal are as alike as its discs" : "");

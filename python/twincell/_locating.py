@@ -19,9 +19,9 @@ def locate(stack, diameter=None, *, locator="vote", min_score=0.04, min_explaine
     name, which the program reads once more. The options are those of `twincell locate` (docs/locating.md).
 
     Returns y, x, mass, size, ecc, signal, raw_mass, ep, frame, radius, sigma_x, sigma_y, sigma_radius, score, tracer,
-    edge, in px, one row per bead. `attrs` of the table has "settings" (locate(other, **settings) finds other frames
-    with the same options), "settings_frame", "contrast", "left_out" (candidates left out, by reason) and "frames" (one
-    dict per frame).
+    edge, overlap, in px, one row per bead. `attrs` of the table has "settings" (locate(other, **settings) finds other
+    frames with the same options), "settings_frame", "contrast", "left_out" (candidates left out, by reason) and
+    "frames" (one dict per frame).
     """
     import pandas as pd
 
@@ -34,6 +34,7 @@ def locate(stack, diameter=None, *, locator="vote", min_score=0.04, min_explaine
     table = pd.DataFrame(columns)
     table["tracer"] = table["tracer"].astype(bool)
     table["edge"] = table["edge"].astype(bool)
+    table["overlap"] = table["overlap"].astype(bool)
     table.attrs.update(report)
     if view is not None:
         stated = {name: list(value) if name == "diameter" and hasattr(value, "__len__") else value

@@ -27,7 +27,7 @@ def test_locate_is_the_verb(verb):
     table = pd.read_csv(io.StringIO(csv), dtype=str)
     assert len(table) == len(beads)
     for name in heads:
-        mine = (beads[name].astype(int).astype(str) if name in ("frame", "tracer", "edge")
+        mine = (beads[name].astype(int).astype(str) if name in ("frame", "tracer", "edge", "overlap")
                 else beads[name].map(lambda v, n=decimals.get(name, 4): f"{v:.{n}f}"))
         assert (mine == table[name]).all(), name
     settings = beads.attrs["settings"]

@@ -82,9 +82,9 @@ inline double smooth_step(double a, double b, double x) {
   return t * t * (3 - 2 * t);
 }
 
-constexpr double kLight = 200, kBlur = 0.7, kNoise = 3;
+constexpr double kLight = 200, kBlack = 18, kBlur = 0.7, kNoise = 3;
 
-inline void paint_opaque(Painter& canvas, const Places& places, double level = 18) {
+inline void paint_opaque(Painter& canvas, const Places& places, double level = kBlack) {
   for (const Place& p : places)
     canvas.disc(p.x, p.y, p.radius, [&](double, double, double) { return level; });
 }
@@ -175,13 +175,16 @@ inline Exhibit fluorescent(double d) {
   return {canvas.exposed(1, kNoise, 6), truth_of(places)};
 }
 
-/// Two layers of opaque beads in projection. A bead counts if 0.6 of its rim is outside all other beads.
-inline Exhibit two_layers(double d) {
+/// Two layers of beads in projection. A bead counts if 0.6 of its rim is outside all other beads.
+/// \param transmitted share of the light; beads behind each other transmit the product
+inline Exhibit layers(double d, double transmitted) {
   Painter canvas(side_of(d), kLight);
   Places places = apart(d, inner(canvas.side(), 0.7 * d), 1.75, 7);
   const Places behind = apart(d, inner(canvas.side(), 0.9 * d), 1.9, 71);
   places.insert(places.end(), behind.begin(), behind.end());
-  paint_opaque(canvas, places);
+  for (const Place& p : places)
+    canvas.disc(p.x, p.y, p.radius,
+                [&](double, double, double below) { return std::max(kBlack, transmitted * below); });
   std::vector<imaging::TruthBead> truth = truth_of(places);
   for (imaging::TruthBead& b : truth) {
     constexpr int kDirections = 180;
@@ -196,6 +199,13 @@ inline Exhibit two_layers(double d) {
     b.counts = free > 0.6 * kDirections;
   }
   return {canvas.exposed(kBlur, kNoise, 7), truth};
+}
+
+inline Exhibit two_layers(double d) {
+  return layers(d, 0);
+}
+inline Exhibit two_pale_layers(double d) {
+  return layers(d, 0.5);
 }
 
 /// Opaque beads under a free surface: a dark, wavy water line with a bright line above it.
@@ -395,6 +405,7 @@ inline const std::vector<Kind>& kinds() {
                                         {"photoelastic", photoelastic},
                                         {"fluorescent", fluorescent},
                                         {"two layers", two_layers},
+                                        {"pale layers", two_pale_layers},
                                         {"water line", water_line},
                                         {"round cell", round_cell},
                                         {"ruler, text", ruler_and_text},
