@@ -28,7 +28,6 @@ class BedKernel {
     a = {};
     a.records = bed.records, a.spins = bed.spins, a.forces = bed.forces;
     a.inv_mass = bed.inv_mass, a.turn = bed.turn, a.inertia_step = 1;
-    a.reference = bed.records;  // the deviation from free flight is not used
     a.spin = bed.spin, a.dt = bed.dt;
     for (int c = 0; c < D; ++c) a.gravity[c] = bed.gravity[c];
   }
@@ -64,16 +63,23 @@ class BedKernel {
 
   static std::int32_t record(std::int32_t b) { return kRecord<D> * b; }
 
+  /// Notes a step in the report. Several threads may note the same one at once.
+  static void mark(std::int64_t& noted, std::int64_t step) {
+    __atomic_store_n(&noted, step, __ATOMIC_RELAXED);
+  }
+
   /// Half kicks and, if `drift`, the drift of every bead.
   void move(std::int64_t step, int kicks, bool drift) {
     space_.for_each(bed_.beads, [&](std::int32_t b) {
       const BeadRange one{b, b + 1};
       IntegrateArgs a = integrate_;
       a.runs = &one, a.n_runs = 1;
+      // The deviation from free flight is not used: its reference is the record of this bead, not of another.
+      a.reference = bed_.records + std::ptrdiff_t{kRecord<D> / 2} * b;
       a.kicks = kicks;
       a.drift = drift;
       integrate_kernel<ScalarLanes, D>(a);
-      if (drift && is_outside(b)) report_.outside = step;
+      if (drift && is_outside(b)) mark(report_.outside, step);
     });
   }
 
@@ -101,7 +107,7 @@ class BedKernel {
       for (int c = 0; c < D; ++c) sum[c] += bed_.records[record(b) + c] - bed_.listed_at[D * b + c];
     for (int c = 0; c < D; ++c) carried_[c] = sum[c] / bed_.beads;
     space_.for_each(bed_.beads, [&](std::int32_t b) {
-      if (is_outside(b)) report_.far = step;
+      if (is_outside(b)) mark(report_.far, step);
     });
     return report_.far == step;
   }
@@ -127,7 +133,7 @@ class BedKernel {
                                : nullptr;
       if (!is_within_skin(b, other) && !remembers(kept)) continue;
       if (at == end) {
-        report_.overfull = step;
+        mark(report_.overfull, step);
         break;
       }
       bed_.partner[1 - list_][at] = other;
@@ -170,7 +176,7 @@ class BedKernel {
           for (int c = 0; c < D; ++c)
             bed_.forces[record(b) + c] += plate_drag_force(
                 bed_.drag[b], bed_.records[record(b) + kRecord<D> / 2 + c], plate[3 + c], bed_.quantum);
-      if (overlap > bed_.overlap_bound) report_.failed = step;
+      if (overlap > bed_.overlap_bound) mark(report_.failed, step);
     });
   }
 
