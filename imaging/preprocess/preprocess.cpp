@@ -228,6 +228,9 @@ cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double radius_px, double
   cv::Mat1b bars = straight_bars(darkness, 2 * radius_px, 2 * in_radii * radius_px);
   if (regions.empty() && bars.empty()) return {};
   const double blur = blur_of(darkness);
+  constexpr double kBent = 3;  // blurs; the rims of smaller beads do not bend visibly
+  if (radius_px < kBent * blur) bars = {};
+  if (regions.empty() && bars.empty()) return {};
   double beside = (kTail + kFromDark) * blur;
   if (!regions.empty() && blur > std::max(kSharp, kOutOfFocus * radius_px)) {
     cv::Mat1f smooth;

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "core/median.hpp"
-#include "imaging/preprocess/preprocess.hpp"
 
 namespace twincell::imaging {
 
@@ -89,7 +88,7 @@ int width_of(const std::vector<BarLine>& lines) {
 }  // namespace
 
 std::vector<StraightBar> straight_bars(const cv::Mat1f& d, Border border, double diameter_px) {
-  constexpr double kSmallest = 8, kSmallestInBlurs = 6;
+  constexpr double kSmallest = 8;
   constexpr int kSampled = 8;  // most pictures have no bars, as a few lines show
   constexpr double kSteepest = 0.1;
   const int count = line_count(border, d.size());
@@ -120,7 +119,6 @@ std::vector<StraightBar> straight_bars(const cv::Mat1f& d, Border border, double
     bar.width = width_of(bar.lines);
     bars.push_back(std::move(bar));
   }
-  if (!bars.empty() && diameter_px < kSmallestInBlurs * blur_of(d)) return {};
   return bars;
 }
 

@@ -230,6 +230,20 @@ std::vector<FoundSettings> small_profiles(const cv::Mat& grey, const LocatorOpti
   return best_profiles(std::move(tried));
 }
 
+/// Whether discs of one layer leave some out that may be discs of another layer: those that overlap, and
+/// those that were fitted to two.
+bool may_overlap(const cv::Mat& grey, const LocatorOptions& given, const FoundSettings& settings) {
+  constexpr double kShare = 0.02;  // of the beads
+  constexpr std::size_t kFewest = 3;
+  const Located located = locate(grey, completed(settings, given));
+  const auto out = static_cast<std::size_t>(
+      std::count_if(located.dropped.begin(), located.dropped.end(), [](const Detection& d) {
+        return d.verdict == Verdict::overlaps || d.verdict == Verdict::wrong_radius ||
+               d.verdict == Verdict::unexplained;
+      }));
+  return out >= kFewest && static_cast<double>(out) >= kShare * static_cast<double>(located.beads.size());
+}
+
 /// What explains more than the chosen settings but is not round, if anything and of one size.
 std::optional<FoundSettings> best_not_round(const SettingsChoice& choice) {
   const TriedSettings* best = not_round(choice);
@@ -324,7 +338,7 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
       winner.method = kEdgeRefiner.word;
       more.push_back(winner);
       winner.method = kOverlappingRefiner.word;
-      if (plain) more.push_back(winner);
+      if (plain && may_overlap(grey, given, choice.tried.front().settings)) more.push_back(winner);
     }
   }
   return with(more);
