@@ -332,8 +332,7 @@ analysis::Figure figure(const Measured& m) {
   f.plot += panels.end(key);
   f.caption =
       "Errors of single collisions and of the impacts of a bed against the processor time. Bold: k_n of the "
-      "papers; "
-      "thin: other k_n.";
+      "papers; thin: other k_n.";
   return f;
 }
 

@@ -136,8 +136,7 @@ std::string LocatedFrames::overlaps() const {
   if (overlapping_ == 0) return {};
   return fmt::format(
       "discs overlap in projection, as in two layers: {} of {} do so and are marked, and those that others "
-      "hide are "
-      "missing (--refine overlapping)\n",
+      "hide are missing (--refine overlapping)\n",
       overlapping_, counted(beads_, "bead"));
 }
 

@@ -341,8 +341,7 @@ void add_sweep(CLI::App& program, Common& common) {
          "--device", options->device,
          "Run the beds on a device, with the same results: gpu, a graphics card with many beds at once "
          "(--threads, default 256), which was never tried on a card (docs/sweeps.md); host, the same kernel "
-         "on "
-         "the processor, to test it")
+         "on the processor, to test it")
       ->check(CLI::IsMember({"gpu", "host"}))
       ->excludes("--mpi");
   run.add_flag("--keep-trajectories", options->keep_trajectories,

@@ -182,8 +182,7 @@ void bind_observables(py::module_& module) {
       py::arg("points"), py::arg("box") = py::none(), py::arg("cell_radius") = analysis::kCellRadius,
       (header_text("analysis/neighbours/voronoi.hpp", "voronoi_cells") + points_text +
        "\n\nReturns a dict of arrays: i, j, bond and edge (length of the shared edge) with one entry per "
-       "bond, "
-       "enclosed with one per bead.")
+       "bond, enclosed with one per bead.")
           .c_str());
 }
 

@@ -208,15 +208,13 @@ void bind_simulation(py::module_& module) {
       .def(py::init<const sim::Scene&, int, const py::object&>(), py::arg("scene"), py::kw_only(),
            py::arg("threads") = 0, py::arg("callback") = py::none(),
            "Places the beads; no step is done yet.\n\nthreads: 0: chosen from the number of beads; the bits "
-           "do not "
-           "depend on it. callback: function of (done, total).")
+           "do not depend on it. callback: function of (done, total).")
       .def("settle", &Run::settle, py::arg("callback") = py::none(),
            header_text(kHeader, "Simulation::settle"))
       .def("run", &Run::run, py::arg("cycles") = py::none(), py::arg("callback") = py::none(),
            "Goes on by this number of recorded cycles, or to the end of the scene, and returns their frames. "
-           "Settles and "
-           "runs the discarded cycles first if that is not done. At the end of the scene the result has no "
-           "frame.")
+           "Settles and runs the discarded cycles first if that is not done. At the end of the scene the "
+           "result has no frame.")
       .def_property_readonly("trajectory", &Run::trajectory, "All frames so far, without a copy.")
       .def_property_readonly(
           "state",
@@ -225,8 +223,7 @@ void bind_simulation(py::module_& module) {
             return view(beads.data(), {static_cast<py::ssize_t>(beads.size())}, {sizeof(sim::Bead)}, run);
           },
           "The beads now: a read-only structured array over the memory of the simulation, which changes as "
-          "it runs. "
-          "Fields x, y, z, vx, vy, vz, spin, spin_x, spin_z, radius, mass, inertia.")
+          "it runs. Fields x, y, z, vx, vy, vz, spin, spin_x, spin_z, radius, mass, inertia.")
       .def_property_readonly(
           "time", [](const Run& r) { return r.simulation().system().time(); },
           "Time since the start of settling or, under drive, since phase 0, t0.")

@@ -351,9 +351,8 @@ void bind_trajectory(py::module_& module) {
   bind_box(module);
   py::class_<Column>(
       module, "Column",
-      "A vector per bead in every frame: column[t] is a read-only array (n_beads, 3) over the memory of "
-      "the frame, column[a:b], column[a:b, i] and "
-      "numpy.asarray(column) are copies of (frames, n_beads, 3).")
+      "A vector per bead in every frame: column[t] is a read-only array (n_beads, 3) over the memory of the "
+      "frame, column[a:b], column[a:b, i] and numpy.asarray(column) are copies of (frames, n_beads, 3).")
       .def("__len__", [](const Column& c) { return c.trajectory->n_frames(); })
       .def(
           "__getitem__",
@@ -440,8 +439,7 @@ void bind_trajectory(py::module_& module) {
             return py::cast(Contacts{t});
           },
           "Contacts: contacts[t] has those of frame t with their forces. None if the trajectory does not "
-          "store "
-          "them (simulate --contacts, the key time.contacts).")
+          "store them (simulate --contacts, the key time.contacts).")
       .def_property_readonly(
           "walls", [](const Trajectory& t) { return t.info().walls; },
           header_text(kHeader, "TrajectoryInfo::walls"))

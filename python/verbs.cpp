@@ -95,10 +95,9 @@ void bind_verbs(py::module_& module) {
       py::arg("plan"), py::arg("folder") = py::none(), py::kw_only(), py::arg("seed") = py::none(),
       py::arg("keep_trajectories") = false, py::arg("threads") = 0, py::arg("callback") = py::none(),
       (std::string(
-           "Computes the points of a plan, one on each core, stores them in `folder` (default: "
-           "PLAN.sweep), and returns the collected results as a dict. Finished points are not repeated, so "
-           "an "
-           "interrupted sweep goes on when it is called again.\n\n") +
+           "Computes the points of a plan, one on each core, stores them in `folder` (default: PLAN.sweep), "
+           "and returns the collected results as a dict. Finished points are not repeated, so an interrupted "
+           "sweep goes on when it is called again.\n\n") +
        header_text("sweep/collect.hpp", "collected_json"))
           .c_str());
 }

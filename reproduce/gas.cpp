@@ -332,8 +332,7 @@ std::vector<std::string> Gas::conditions() const {
       "rough: "
       "dashpot with c_t = c_n and Coulomb slider without history, mu = 0.4; none of k_n, c_t is in the paper",
       "n = 6.37 steps per contact, split at contact entry and exit, where steps are taken; from W = 10 on "
-      "beads fly "
-      "from contact to contact and steps act only where three meet (docs/event_driven.md)",
+      "beads fly from contact to contact and steps act only where three meet (docs/event_driven.md)",
       fmt::format("start: random, settled at rest, then moving with the plate; {} cycles discarded",
                   discard_least == discard_most ? fmt::format("{}", discard_most)
                                                 : fmt::format("{} to {}", discard_least, discard_most)),
@@ -345,8 +344,7 @@ std::vector<std::string> Gas::conditions() const {
 std::vector<std::string> Gas::cheaper() const {
   std::vector<std::string> s = {
       "where steps are taken, split at n = 6.37 per contact: no less accurate in any collision than Verlet "
-      "at "
-      "n = 50 (docs/accuracy.md); the paper states neither"};
+      "at n = 50 (docs/accuracy.md); the paper states neither"};
   std::size_t done = 0, all = 0, capped = 0, failed = 0, solid = 0, soft = 0;
   double loosest = 0;
   for (const Runs& runs : runs_) {

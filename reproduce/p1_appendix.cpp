@@ -156,8 +156,7 @@ void add_contacts(Reproduction& r, json& measured) {
     const auto clause = [&](std::string& clauses, int column, const std::string& curve) {
       clauses += fmt::format(
           "{0}'p1-appendix-a.dat' index {1} using 1:{2} with points pt {3} ps 0.7 {4} notitle, {5} {6} with "
-          "lines lw "
-          "{7} {4} notitle",
+          "lines lw {7} {4} notitle",
           clauses.empty() ? "" : ", ", index, column, symbol, look, range, curve,
           analysis::figure_style::kLine);
     };
@@ -190,8 +189,7 @@ void add_contacts(Reproduction& r, json& measured) {
                                         analysis::figure_style::kCurve)});
   f.caption = fmt::format(
       "A bead meets another, and a wall, with unit speed. Points: run with Verlet steps, n = {:g}; lines: "
-      "closed "
-      "forms that belong to eq. A5. The force is negative at the end: tension is allowed.",
+      "closed forms that belong to eq. A5. The force is negative at the end: tension is allowed.",
       kSteps);
   r.figures.push_back(f);
 }
@@ -217,8 +215,7 @@ analysis::Figure contact_sketch() {
       "sky\n";
   f.caption =
       "Two beads that overlap by δ_n: unit vectors n_ij from j to i and t_ij along the tangential part of "
-      "the "
-      "relative velocity v_ij. Form of Fortini & Huang 2015, Fig. 6.";
+      "the relative velocity v_ij. Form of Fortini & Huang 2015, Fig. 6.";
   return f;
 }
 
@@ -318,10 +315,8 @@ void add_measures(Reproduction& r, json& measured) {
       analysis::figure_style::kStated);
   f.caption =
       "s_b (eq. B4) of a completely inelastic rigid bed, found by the analysis of a synthetic trajectory "
-      "(points) "
-      "and in closed form (lines through the table). The threshold σ/30 lies on displacement, not on "
-      "contact: it "
-      "is passed at Γ above 1.";
+      "(points) and in closed form (lines through the table). The threshold σ/30 lies on displacement, not "
+      "on contact: it is passed at Γ above 1.";
   r.figures.push_back(f);
 }
 

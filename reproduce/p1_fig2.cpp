@@ -53,8 +53,7 @@ std::vector<Target> targets_of(const Packings& all) {
     if (favoured.verdict == Verdict::fail)
       favoured.reason = fmt::format(
           "B grows from the side walls, which at N_l = {} are longer than the floor, from which A grows (see "
-          "Fig. 1); "
-          "the paper does not say how its beads were placed",
+          "Fig. 1); the paper does not say how its beads were placed",
           all.layers);
     const auto with = std::count_if(all.random.begin(), all.random.end(), [](const Packing& p) {
       return share(p, "orientation_a") > 0 && share(p, "orientation_b") > 0 &&
@@ -93,12 +92,10 @@ analysis::Figure figure_of(const Packings& all) {
     f.plot += fmt::format(
         "set lmargin at screen {0}\nset rmargin at screen {1}\nset bmargin at screen 0.16\nset tmargin at "
         "screen 0.86\nset size ratio -1\nunset tics\nunset border\nunset key\nset xrange [-0.6:{2}]\nset "
-        "yrange "
-        "[-0.6:{2}]\n{3}set object 1 rectangle from -0.5,0 to 0,{2} fs solid 0.6 "
-        "noborder fc rgb '#888888' front\nset object 2 rectangle from -0.5,-0.5 to {2},0 fs solid 0.6 "
-        "noborder fc "
-        "rgb '#888888' front\nplot '{4}.dat' index {5} using 1:2:3 with circles fs solid border lc rgb "
-        "'#333333' fc rgb '{6}'\nunset object 1\nunset object 2\n",
+        "yrange [-0.6:{2}]\n{3}set object 1 rectangle from -0.5,0 to 0,{2} fs solid 0.6 noborder fc rgb "
+        "'#888888' front\nset object 2 rectangle from -0.5,-0.5 to {2},0 fs solid 0.6 noborder fc rgb "
+        "'#888888' front\nplot '{4}.dat' index {5} using 1:2:3 with circles fs solid border lc rgb '#333333' "
+        "fc rgb '{6}'\nunset object 1\nunset object 2\n",
         left, left + 0.29, kSide,
         analysis::figure_style::panel_title("ab"[index], fmt::format("orientation {}", o.name)), f.name,
         index, o.colour);
@@ -134,12 +131,9 @@ analysis::Figure figure_of(const Packings& all) {
                 fmt::format("keyentry with lines {} title 'by chance'", analysis::figure_style::kStated)});
   f.caption =
       "(a), (b) Crystals in the two orientations at the side wall and the floor. (c) Of the ordered beads "
-      "(psi6 > "
-      "0.9) of each random bed, the shares whose close-packed rows are within 10 degrees of the floor (A) "
-      "and of "
-      "the side walls (B); lattices that lie anyhow would give a third each (dashed). The paper's random "
-      "beds "
-      "favour A. Form of Fortini & Huang 2015, Fig. 2.";
+      "(psi6 > 0.9) of each random bed, the shares whose close-packed rows are within 10 degrees of the "
+      "floor (A) and of the side walls (B); lattices that lie anyhow would give a third each (dashed). The "
+      "paper's random beds favour A. Form of Fortini & Huang 2015, Fig. 2.";
   return f;
 }
 

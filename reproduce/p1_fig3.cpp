@@ -204,8 +204,7 @@ std::optional<Crystals> crystals_of(const Size& size, std::uint64_t seed) {
   if (!has_slips()) return std::nullopt;
   Crystals c;
   c.plan = sweep::read_plan_text(fmt::format("seed = {}\nresults = [\"slips\", \"p_s\", \"s_b\", "
-                                             "\"phase\"]\n{}\n[axes]\ndrive.gamma = [1.2, 1.5, "
-                                             "1.8, 2.1]\n",
+                                             "\"phase\"]\n{}\n[axes]\ndrive.gamma = [1.2, 1.5, 1.8, 2.1]\n",
                                              seed, p1_scene(run_of(kLayersOfA1, false, size.convect_cycles))),
                                  "p1-fig3, slips");
   return c;
@@ -431,8 +430,7 @@ analysis::Figure figure_of(const std::deque<Boundary>& all, const std::vector<Fi
   f.caption =
       "Onset of bouncing (open) and of convection (filled) against the height of the bed, from random starts "
       "(triangles) and from crystals (circles), drawn a little to the left and to the right, with 95 % "
-      "intervals; "
-      "arrows are one-sided limits.";
+      "intervals; arrows are one-sided limits.";
   f.caption += filmed.empty() ? " The paper's experiment is a drawing without numbers; --data draws yours as "
                                 "connected squares."
                               : " Connected squares: the experiment of --data.";
@@ -453,8 +451,7 @@ std::vector<std::string> cheaper_of(const Size& size, const std::deque<Boundary>
   if (size.convect_cycles < 200)
     s.push_back(
         fmt::format("s_c over N_f = {} cycles, where 200 are the definition: beds that begin to convect "
-                    "later are missed, so onsets "
-                    "come out high",
+                    "later are missed, so onsets come out high",
                     size.convect_cycles));
   s.push_back(fmt::format("s_b over {} cycles, where 200 are the definition", size.bounce_cycles));
   s.emplace_back("runs for convection end when their verdict is settled (docs/sweeps.md)");

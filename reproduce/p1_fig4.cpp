@@ -205,14 +205,9 @@ analysis::Figure figure_of(const StrengthSweeps& all) {
                   key_of_border(), analysis::figure_style::stated_line_entry("paper: bend at K_m = 3.3")});
   f.caption =
       "T_g* against K_m from random beds (left) and crystals (right), mean over runs with 95 % intervals. "
-      "Thin "
-      "dashed: "
-      "onset of convection (s_c > σ), right of which is region B; for crystals also the first slips, left of "
-      "which "
-      "is A1. "
-      "Line: two power laws that meet. Thick dashed: where the paper's slope changes. Form of Fortini & "
-      "Huang 2015, "
-      "Fig. 4.";
+      "Thin dashed: onset of convection (s_c > σ), right of which is region B; for crystals also the first "
+      "slips, left of which is A1. Line: two power laws that meet. Thick dashed: where the paper's slope "
+      "changes. Form of Fortini & Huang 2015, Fig. 4.";
   return f;
 }
 

@@ -254,14 +254,10 @@ analysis::Figure figure_of(const StrengthSweeps& all) {
        key_of_border(), analysis::figure_style::stated_line_entry("paper’s E_b")});
   f.caption =
       "Slip probability against 1/K_m from random beds (left) and crystals (right), counted over all runs, "
-      "with "
-      "95 % intervals over the runs where there are several; open symbols: no slip in a bed that bounces, "
-      "drawn at "
-      "the 95 % limit. Lines: Arrhenius laws, all points alike; thick dashed: the paper's barriers through "
-      "the mean "
-      "of the same points, as the paper states no prefactor. Thin dashed: regions of Fig. 4. Form of Fortini "
-      "& "
-      "Huang 2015, Fig. 5.";
+      "with 95 % intervals over the runs where there are several; open symbols: no slip in a bed that "
+      "bounces, drawn at the 95 % limit. Lines: Arrhenius laws, all points alike; thick dashed: the paper's "
+      "barriers through the mean of the same points, as the paper states no prefactor. Thin dashed: regions "
+      "of Fig. 4. Form of Fortini & Huang 2015, Fig. 5.";
   return f;
 }
 

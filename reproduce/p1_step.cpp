@@ -278,10 +278,8 @@ analysis::Figure figure_of(const Values& values, const Size& size) {
   f.plot += panels.end(key);
   f.caption = fmt::format(
       "Granular temperature, slip probability, s_b and s_c of beds of N_l = {} against the steps per contact "
-      "n. Filled "
-      "circles: Verlet, whose friction is of first order in the step. Open squares: split, of second order. "
-      "Bars: 95 % over "
-      "{} runs. T_g* and s_b are over their values for split at n = {:g}.",
+      "n. Filled circles: Verlet, whose friction is of first order in the step. Open squares: split, of "
+      "second order. Bars: 95 % over {} runs. T_g* and s_b are over their values for split at n = {:g}.",
       kLayers, size.seeds, finest);
   return f;
 }
@@ -339,8 +337,7 @@ Reproduction run(const Request& request) {
   r.conditions = p1_contact_conditions();
   r.conditions.push_back(
       fmt::format("N_l = {}, crystals and random beds, both perturbed by 1e-9 sigma; 10 cycles discarded, {} "
-                  "counted; {} runs of each, "
-                  "seeds drawn from the master seed {}",
+                  "counted; {} runs of each, seeds drawn from the master seed {}",
                   kLayers, size.cycles, size.seeds, request.seed));
   r.conditions.emplace_back(
       "T_g* is a time average, from 400 samples a cycle; aliasing is what 20 phases would add");

@@ -181,8 +181,7 @@ analysis::Figure figure_of(const std::string& name, std::vector<Exponent> all, b
        .x = {.label = "V_p/(g d)^{1/2}", .logarithmic = true},
        .y = {.label = of_height ? "Δh_{cm}/d" : "T_z/(m g d)", .logarithmic = true},
        .caption = "Power laws over windows of W, unweighted least squares in the logarithms; [W_f, W_2] "
-                  "contains the "
-                  "window of Warr et al. Bars: 95 % intervals, mostly smaller than the symbols.",
+                  "contains the window of Warr et al. Bars: 95 % intervals, mostly smaller than the symbols.",
        .marks = "set key maxcols 1\n"},
       series);
 }

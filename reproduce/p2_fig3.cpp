@@ -113,8 +113,7 @@ std::vector<analysis::Figure> snapshot_figures(const std::vector<BedSnapshot>& a
             fastest, f.name, s.frame.plate_height);
     f.caption =
         "A smooth bed of the plane at the beginning of a cycle, up to 12 d; the scale of speed is the same "
-        "in (a), "
-        "(b) and (c). Form of Bhateja et al. 2016, Fig. 3.";
+        "in (a), (b) and (c). Form of Bhateja et al. 2016, Fig. 3.";
     figures.push_back(f);
   }
   return figures;

@@ -354,8 +354,7 @@ std::vector<analysis::Figure> pair_figures(const std::string& name, const Pair& 
          .caption =
              of_packing
                  ? "Packing fraction, 100 grains, N = 4, slabs of d; bars of two errors. Form of Bhateja et "
-                   "al. "
-                   "2016, Fig. 15."
+                   "al. 2016, Fig. 15."
                  : fmt::format("100 grains, N = 4, slabs of d, T_z(z) as {}; bars of two errors. Form of "
                                "Bhateja et al. 2016, Fig. 14.",
                                reading.drawn)},

@@ -51,9 +51,7 @@ std::vector<KeyRow> rows() {
        without("width")},
       {"search.runs", "", "24", "60", "largest number of runs for each combination of the axes", search},
       {"search.batch", "", "3", "8",
-       "number of runs that are placed together; larger batches occupy more "
-       "cores",
-       search},
+       "number of runs that are placed together; larger batches occupy more cores", search},
   };
 }
 

@@ -81,8 +81,7 @@ class Draft {
             std::max(kErrors * std::hypot(diameter->error, scale_->error), kShare * scale_->value))
           out_.notes.push_back(
               fmt::format("the walls give {} px per bead and the beads measure {} px: bead diameter ({:g} "
-                          "mm) and width ({:g} "
-                          "mm) do not fit together",
+                          "mm) and width ({:g} mm) do not fit together",
                           value_text(*scale_), value_text(*diameter), *a_.sigma_mm, *a_.width_mm));
     } else if (diameter) {
       scale_ = diameter;

@@ -273,8 +273,7 @@ class GranularTemperature : public Observable {
     r.no_interval = "the mean velocities are estimated from the same frames; the interval of T_z is a guide";
     r.convention = fmt::format(
         "m mean w'^2, w' about the mean vertical velocity at its phase and height: {} slabs of sigma and "
-        "phases, "
-        "lab frame",
+        "phases, lab frame",
         field_.size());
     r.source = kPaper2;
     return r;

@@ -151,11 +151,10 @@ class Convection : public Observable {
          .no_interval = "a count of significant regions",
          .convention =
              fmt::format("regions of one sense of the stream function psi of the circulation, psi = 0 at "
-                         "walls, floor and "
-                         "surface; |t| of psi over {} blocks of cycles exceeds the value that the largest "
-                         "|t| exceeds in {:g} % of 999 draws with random signs of the blocks, the "
-                         "probability of any roll in a bed without steady flow; |psi| is at least {:g} of "
-                         "the largest and {:.3g} sigma^2 in the whole run",
+                         "walls, floor and surface; |t| of psi over {} blocks of cycles exceeds the value "
+                         "that the largest |t| exceeds in {:g} % of 999 draws with random signs of the "
+                         "blocks, the probability of any roll in a bed without steady flow; |psi| is at "
+                         "least {:g} of the largest and {:.3g} sigma^2 in the whole run",
                          blocks_.size(), 100 * kRollFalseAlarm, kSmallestRoll, kLeastCarried * cell_)},
         why.empty() && !enough
             ? fmt::format("fewer than {} blocks of cycles: rolls cannot be distinguished from chance",

@@ -176,8 +176,7 @@ class Slip : public Observable {
   void add_probability(std::vector<Result>& all, const std::string& source) const {
     const std::string rule = fmt::format(
         "at least {} neighbours moved relative to the bead by more than {:g} sigma in one period, neighbours "
-        "at the start of the period; beads "
-        "{:g} sigma or more below the 99th percentile of heights; {}",
+        "at the start of the period; beads {:g} sigma or more below the 99th percentile of heights; {}",
         kSlipBonds, kSlipDistance, kSlipDepth, neighbour_rule_text(context_));
     Result p_s{
         .name = "p_s", .values = {fraction_.mean()}, .unit = "1", .n = trials_, .n_of = "bead-periods"};

@@ -128,8 +128,7 @@ class DefectsObservable : public Observable {
     const std::string none = planar.empty() ? "every bead is at a surface" : planar;
     const std::string rule = fmt::format(
         "neighbours: Voronoi cells within {:.4g} sigma that share an edge; beads at walls, free surfaces and "
-        "holes "
-        "left out",
+        "holes left out",
         radius_);
     const auto mean = [&](const char* name, const BlockAverage& series, const std::string& of) {
       return mean_of(series,

@@ -147,8 +147,7 @@ Figure boundary_figure(const Comparison& c) {
       "Onsets of bouncing and of convection over the number of layers, with their intervals. Open circle: "
       "experiment (drawn a little to the left); filled circle: simulation (a little to the right); square: "
       "fitted by a sweep, whose single runs are the small signs. A triangle that points up marks a lower "
-      "limit, one that points down an upper "
-      "limit.";
+      "limit, one that points down an upper limit.";
   return f;
 }
 

@@ -251,8 +251,7 @@ std::string snapshots_svg(const std::vector<BeadPanel>& panels, const SnapshotSh
   const int height = static_cast<int>(std::ceil(sheet.height()));
   std::string svg = fmt::format(
       "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 "
-      "{0} {1}\" "
-      "font-family=\"Arial, sans-serif\" font-size=\"15\">\n<rect width=\"{0}\" height=\"{1}\" "
+      "{0} {1}\" font-family=\"Arial, sans-serif\" font-size=\"15\">\n<rect width=\"{0}\" height=\"{1}\" "
       "fill=\"white\"/>\n",
       SnapshotSheet::kWidth, height);
   for (std::size_t n = 0; n < panels.size(); ++n) {
@@ -432,8 +431,7 @@ Figure phase_diagram_figure(const std::vector<Run>& runs) {
       clauses + phase_key(runs) + "\n";
   f.caption =
       "Phases of the bed over its number of layers and the strength of the drive. Open symbols: experiment "
-      "(drawn a little to the left); filled: "
-      "simulation (a little to the right).";
+      "(drawn a little to the left); filled: simulation (a little to the right).";
   if (!one_omega) f.caption += " The runs differ in ω, so there is no common K_m axis.";
   return f;
 }

@@ -469,8 +469,7 @@ std::string static_figures(const std::vector<Figure>& figures, const std::filesy
   for (const Figure& figure : figures)
     html += fmt::format(
         "<h3>{}</h3>\n<figure><div class=\"picture\">{}</div><figcaption>{} <small>(figures/{}.svg, .pdf, "
-        ".png, "
-        ".gp, .dat)</small></figcaption></figure>\n",
+        ".png, .gp, .dat)</small></figcaption></figure>\n",
         typeset(figure.title),
         inline_svg(read_text_file(folder / (figure.name + ".svg")), figure.name, figure.title),
         typeset(figure.caption), figure.name);

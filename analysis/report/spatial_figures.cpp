@@ -195,8 +195,7 @@ Figure lattice_figure(const Frame& frame, const TrajectoryInfo& info, const Anal
   // SVG drawing with true circles, which gnuplot does not draw, and with the legend.
   std::string svg = fmt::format(
       "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 "
-      "{0} {1}\" "
-      "font-family=\"Arial, sans-serif\" font-size=\"14\">\n<rect width=\"{0}\" height=\"{1}\" "
+      "{0} {1}\" font-family=\"Arial, sans-serif\" font-size=\"14\">\n<rect width=\"{0}\" height=\"{1}\" "
       "fill=\"white\"/>\n",
       f.width, f.height);
   for (std::size_t s = 0; s < circles.size(); ++s)
@@ -230,20 +229,16 @@ Figure lattice_figure(const Frame& frame, const TrajectoryInfo& info, const Anal
   for (std::size_t s = 0; s < kLattice.size(); ++s)
     f.plot += fmt::format(
         "'{0}.dat' using ($4=={1}?$1:NaN):2:3 with circles fs solid border lc rgb '#555555' lw 0.5 fc rgb "
-        "'{2}' "
-        "notitle, keyentry with points pt 7 ps 1.4 lc rgb '{2}' title '{3}', ",
+        "'{2}' notitle, keyentry with points pt 7 ps 1.4 lc rgb '{2}' title '{3}', ",
         f.name, s, kLattice[s].colour, kLattice[s].name);
   f.plot += fmt::format(
       "'{0}.dat' using 1:($5==5?$2:NaN) with points pt 9 ps 1 lc rgb '{1}' title '5 neighbours', '{0}.dat' "
-      "using "
-      "1:($5==7?$2:NaN) with points pt 5 ps 0.8 lc rgb '{2}' title '7 neighbours'\n",
+      "using 1:($5==7?$2:NaN) with points pt 5 ps 0.8 lc rgb '{2}' title '7 neighbours'\n",
       f.name, kVermilion, kBlue);
   f.caption =
       "The last frame. Orientation A: close-packed rows within 10 degrees of the floor; B: of the side "
-      "walls. "
-      "Triangles and squares: five and seven neighbours by Voronoi cells; beads at walls, free surfaces and "
-      "holes "
-      "are not marked.";
+      "walls. Triangles and squares: five and seven neighbours by Voronoi cells; beads at walls, free "
+      "surfaces and holes are not marked.";
   return f;
 }
 

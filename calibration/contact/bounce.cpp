@@ -505,8 +505,7 @@ void SeriesFit::add_mean(BounceFit& out, const Eigen::MatrixXd& covariance) cons
   if (grown)
     out.notes.push_back(
         fmt::format("the impacts differ by more than the film's noise (chi^2 = {:.3g} of {:g}): e_n depends "
-                    "on the impact, or the "
-                    "bead spins; the error is scaled up accordingly",
+                    "on the impact, or the bead spins; the error is scaled up accordingly",
                     chi2, freedom));
 }
 

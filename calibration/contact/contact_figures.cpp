@@ -22,11 +22,9 @@ analysis::Figure bounce_figure(const BounceFit& fit) {
     f.data += fmt::format("{:.6g} {:.6g} {:.3g}\n", i.speed, i.restitution, i.error);
   }
   f.plot = fmt::format(
-      "{}plot {:.8g} with lines lw 2 lc rgb blue title 'mean', {:.8g} with lines dt 2 lc rgb "
-      "blue title "
-      "'± 95 %', {:.8g} with lines dt 2 lc rgb blue notitle, 'bounce.dat' using 1:2:3 with yerrorbars "
-      "pt 7 lc rgb "
-      "'#222222' title 'impacts'\n",
+      "{}plot {:.8g} with lines lw 2 lc rgb blue title 'mean', {:.8g} with lines dt 2 lc rgb blue title '± "
+      "95 %', {:.8g} with lines dt 2 lc rgb blue notitle, 'bounce.dat' using 1:2:3 with yerrorbars pt 7 lc "
+      "rgb '#222222' title 'impacts'\n",
       analysis::figure_style::axes(speed, e_n), fit.restitution,
       fit.restitution + 1.96 * fit.restitution_error, fit.restitution - 1.96 * fit.restitution_error);
   f.caption = fmt::format("{} impacts between {} flights", fit.impacts.size(), fit.flights);
@@ -96,8 +94,7 @@ analysis::Figure profile_figure(const Inference& inference) {
     std::replace(label.begin(), label.end(), '_', ' ');
     f.plot += fmt::format(
         "set xlabel '{}'\nset xrange [{:.6g}:{:.6g}]\nplot 'profile.dat' index {} using 1:2 with lines lw 2 "
-        "lc rgb "
-        "blue, {:.6g} with lines dt 2 lc rgb vermilion\n",
+        "lc rgb blue, {:.6g} with lines dt 2 lc rgb vermilion\n",
         analysis::gnuplot_text(label), p.sought.lower, p.sought.upper, i, p.drop);
   }
   f.plot += "unset multiplot\n";

@@ -344,8 +344,7 @@ std::string wall_fixes(const Model& m) {
 std::string import_command(const Model& m) {
   return fmt::format(
       "twincell import dump.lammpstrj -o lammps.h5 --dimension {} --timestep {} --cell-width {} --drive-axis "
-      "{} "
-      "--drive-amplitude {} --drive-omega {} --frames-per-cycle {} --tracer-type 2 --bead-mass 1",
+      "{} --drive-amplitude {} --drive-omega {} --frames-per-cycle {} --tracer-type 2 --bead-mass 1",
       m.dimension, m.dt, m.width, "xyz"[static_cast<int>(m.drive.axis)], m.drive.amplitude, m.drive.omega,
       m.phases);
 }

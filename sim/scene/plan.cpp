@@ -216,8 +216,7 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
 std::string why_not_event_driven(const Scene& scene, const Plan& plan) {
   const std::string alone =
       "does not allow a contact to be integrated separately: the normal force has memory, attracts or is not "
-      "smooth, the "
-      "tangential force reads the overlap, or beads resist rolling";
+      "smooth, the tangential force reads the overlap, or beads resist rolling";
   if (!integrable_alone(plan.bead)) return "the contact law of beads " + alone;
   for (const ContactLaws& laws : plan.wall_laws)
     if (!integrable_alone(laws)) return "the contact law of a wall " + alone;

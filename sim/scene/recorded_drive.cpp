@@ -142,8 +142,7 @@ std::string beyond_the_sine(const Drive& drive, double gravity) {
     const RecordedMotion::Range& range = drive.recorded->range();
     return fmt::format(
         " of its sine A = {:.6g} sigma ({:.3g} % of its mean square), {} samples every {:.4g} t0, "
-        "displacement {:.4g} to "
-        "{:.4g} sigma, largest downward acceleration {:.6g} g",
+        "displacement {:.4g} to {:.4g} sigma, largest downward acceleration {:.6g} g",
         drive.amplitude, 100 * share_of_sine(drive), drive.recorded->samples().size(), info.interval,
         range.lowest, range.highest, range.fall / g);
   }

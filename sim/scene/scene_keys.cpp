@@ -248,28 +248,23 @@ void add_drive(Rows& rows) {
        "a_n is relative to A, 0 to 100; φ_n in cycles of the harmonic, from 0 to below 1"},
       {"drive.file", "", "", "\"trace.csv\"",
        "CSV file of a recorded motion, which replaces the formula: columns time_s (time_ms, time_t0) and one "
-       "of "
-       "position_mm (_m, _sigma), velocity_mm_s (_m_s, _v0), acceleration_m_s2 (_g), positive along `axis`. "
-       "A relative "
-       "name is resolved from the folder of the scene file. Needs the frequency; an amplitude, Γ, K_m or "
-       "peak velocity "
-       "scales the record"},
+       "of position_mm (_m, _sigma), velocity_mm_s (_m_s, _v0), acceleration_m_s2 (_g), positive along "
+       "`axis`. A relative name is resolved from the folder of the scene file. Needs the frequency; an "
+       "amplitude, Γ, K_m or peak velocity scales the record"},
       {"drive.repeat",
        "",
        "the record is not repeated",
        "true",
        "true: the record contains whole cycles, without the first sample of the next, and is repeated; of "
-       "one cycle if no "
-       "frequency is stated",
+       "one cycle if no frequency is stated",
        {"drive.file=trace.csv"}},
       {"drive.cutoff",
        "1/t0",
        "the record is not smoothed",
        "2.0",
        "frequency above which noise of the record is removed: of the amplitude of a sine of frequency f "
-       "remains "
-       "1 − (r/(1 + r))², r = (f/f_c)⁴ for frequencies far below the sampling rate; at least twice that of "
-       "the drive",
+       "remains 1 − (r/(1 + r))², r = (f/f_c)⁴ for frequencies far below the sampling rate; at least twice "
+       "that of the drive",
        {"drive.file=trace.csv"}},
       {"drive.cutoff_per_t0", "1/t0", "", "2.0", "", {"drive.file=trace.csv"}},
       {"drive.cutoff_hz", "1/s", "", "200.0", "", recorded},
@@ -285,9 +280,8 @@ void add_drive(Rows& rows) {
        "them; ramp: the amplitude increases from 0"},
       {"drive.phase", "cycles", "0; of a start in motion that of the frame", "0.25",
        "below 1: initial phase of the plate, rounded to the nearest step; 0.25 is the highest point of a "
-       "sine. The "
-       "settled bed is moved there with the plate. The cycle in which the drive begins counts as one of "
-       "time.discard and time.cycles"},
+       "sine. The settled bed is moved there with the plate. The cycle in which the drive begins counts as "
+       "one of time.discard and time.cycles"},
       {"drive.ramp_cycles", "cycles", "10", "20.0", "duration of the ramp", {"drive.start=ramp"}},
       {"drive.schedule", "", "", "[[0.0, 2.0], [5.0, 1.0]]",
        "[[cycle, factor], …]: factor on the amplitude, interpolated linearly, for example to fluidise a bed "
@@ -297,8 +291,7 @@ void add_drive(Rows& rows) {
   const Rows changing = {
       {"drive.ramp.gamma", "1", "", "3.0",
        ramp + "Γ at its end, then Γ is linear. At most one of gamma, amplitude, k_m, peak_velocity; without "
-              "any, "
-              "the one of [drive] stays"},
+              "any, the one of [drive] stays"},
       {"drive.ramp.peak_acceleration_g", "g", "", "3.0", ""},
       {"drive.ramp.peak_acceleration_m_s2", "m/s²", "", "29.4", "", laboratory},
       {"drive.ramp.amplitude", "σ", "", "3.0", "A at the end of the ramp, then A is linear"},
@@ -324,8 +317,7 @@ void add_drive(Rows& rows) {
        {"drive.ramp.gamma=3.0", "time.cycles=4"}},
       {"drive.horizontal.amplitude", "σ", "", "0.5",
        "[drive.horizontal]: the plate and the walls that ride with it also move along x, by X sin(nωt + "
-       "2πφ); "
-       "X; with drive.axis = \"z\""},
+       "2πφ); X; with drive.axis = \"z\""},
       {"drive.horizontal.amplitude_sigma", "σ", "", "0.5", ""},
       {"drive.horizontal.amplitude_mm", "mm", "", "1.0", "", laboratory},
       {"drive.horizontal.ratio",
@@ -368,23 +360,20 @@ void add_start_and_time(Rows& rows) {
        "v0",
        "1",
        "0.5",
-       "largest initial speed along each axis, for a random start "
-       "only",
+       "largest initial speed along each axis, for a random start only",
        {"start.kind=random"}},
       {"start.fraction",
        "1",
        "0.4 (3D: 0.25)",
        "0.1",
        "share of the column's area (3D: volume) that the beads of a random start take before they fall: the "
-       "smaller, "
-       "the taller the column and the later the last beads land. At most 0.5 (3D: 0.35)",
+       "smaller, the taller the column and the later the last beads land. At most 0.5 (3D: 0.35)",
        {"start.kind=random"}},
       {"start.rest_energy", "m g σ", "1e-12", "1e-10",
        "kinetic energy per bead below which a bed counts as at rest"},
       {"start.relax", "", "false", "true",
        "true, or `simulate --relax`: before the run, push beads apart and out of walls, by 0.01 σ per "
-       "contact "
-       "and sweep, however deep the overlap"},
+       "contact and sweep, however deep the overlap"},
       {"start.settle_limit", "t0", "100", "200.0",
        "longest settling time on the resting plate; the result is printed"},
       {"time.steps_per_contact", "", "20; 50 with \"verlet\" and \"predicted\"", "40",
@@ -395,8 +384,7 @@ void add_start_and_time(Rows& rows) {
        "true: n may be as small as 1. Below 2.7 (3.1 in 3D) a bed of touching beads is unstable"},
       {"time.integrator", "", "\"split\"", "\"verlet\"",
        "verlet: dashpots use the half-step velocity; predicted: dashpots use a velocity predicted for the "
-       "end "
-       "of the step; split: predicted, and steps are split where contacts begin and end, so that every "
+       "end of the step; split: predicted, and steps are split where contacts begin and end, so that every "
        "collision is second order"},
       {"time.stepping", "", "\"auto\"", "\"steps\"", help_of(kSteppings)},
       {"time.precision", "", "\"double\"", "\"double\"",
@@ -427,8 +415,7 @@ void add_start_and_time(Rows& rows) {
        "0",
        "0.001",
        "the run also ends when it is at most this value. A solid bed has T_z = 0, for which no relative "
-       "error "
-       "can be reached",
+       "error can be reached",
        {"until.quantity=T_z"}},
       {"scale.sigma_mm", "mm", "", "2.0", "laboratory value of σ"},
       {"scale.sigma_m", "m", "", "0.002", ""},
@@ -440,8 +427,7 @@ void add_start_and_time(Rows& rows) {
        "true",
        "false",
        "false: rotation need not be computed. Refused while μ > 0 at any contact, where this would change "
-       "the "
-       "result",
+       "the result",
        {"contact.mu=0"}},
       {"effects.history",
        "",

@@ -26,8 +26,7 @@ std::string likely_cause(const System& s, const GuardLimits& limits) {
   return s.dt > limits.stable_step
              ? fmt::format(
                    "unstable step: {:.3g} t0 exceeds {:.3g}, the stability limit of a bed of beads in "
-                   "contact; "
-                   "raise time.steps_per_contact",
+                   "contact; raise time.steps_per_contact",
                    s.dt, limits.stable_step)
              : "the beads are too fast or too heavy for their springs and the step: raise contact.k_n or "
                "time.steps_per_contact, or reduce the drive";

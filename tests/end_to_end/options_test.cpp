@@ -252,8 +252,7 @@ TEST(Options, AFormerOptionIsRefusedWithThePresentOne) {
     std::string says;
   } former[] = {
       {{"calibrate", "contacts", "bounce", "b.csv", "--amplitude", "1"},
-       "--amplitude: is a former option; "
-       "write --drive-amplitude."},
+       "--amplitude: is a former option; write --drive-amplitude."},
       {{"calibrate", "contacts", "bounce", "b.csv", "--omega", "1"}, "write --drive-omega."},
       {{"calibrate", "contacts", "bounce", "b.csv", "--phase=1"}, "write --drive-phase."},
       {{"calibrate", "plate", "frames", "--fps", "500"}, "write --frame-rate-hz."},

@@ -25,8 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kScene =
     "preset = \"fortini-huang-2015\"\n[beads]\nlayers = 3\n[cell]\nwidth = 8\n[drive]\ngamma = "
-    "1.5\n[time]\ncycles "
-    "= 2\ndiscard = 0\n";
+    "1.5\n[time]\ncycles = 2\ndiscard = 0\n";
 
 void write(const fs::path& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;

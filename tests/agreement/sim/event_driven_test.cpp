@@ -364,12 +364,10 @@ TEST(Flights, AContactIsHandedOverAsItStands) {
 TEST(Flights, ElasticBeadsKeepTheirEnergy) {
   Gas g(
       "[cell]\ndimension = 3\nwidth = 8.0\ndepth = 8.0\nheight = 8.0\ngravity = 0.0\nsides = "
-      "\"periodic\"\nplates "
-      "= \"periodic\"\nbottom = \"periodic\"\n[beads]\ncount = 50\n[start]\nkind = "
-      "\"random\"\n[contact]\nk_n = "
-      "1e6\nrestitution = 1.0\ntangential = \"none\"\n[drive]\namplitude = 0.0\nomega = "
-      "6.0\n[time]\nintegrator = "
-      "\"split\"\nsteps_per_contact = 400\nstepping = \"event-driven\"\n",
+      "\"periodic\"\nplates = \"periodic\"\nbottom = \"periodic\"\n[beads]\ncount = 50\n[start]\nkind = "
+      "\"random\"\n[contact]\nk_n = 1e6\nrestitution = 1.0\ntangential = \"none\"\n[drive]\namplitude = "
+      "0.0\nomega = 6.0\n[time]\nintegrator = \"split\"\nsteps_per_contact = 400\nstepping = "
+      "\"event-driven\"\n",
       true);
   const auto least = [&] {  // maximum over several steps, at one of which no beads are in contact
     double e = 0;

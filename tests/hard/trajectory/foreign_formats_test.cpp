@@ -173,8 +173,7 @@ TEST_F(ForeignFormats, ExtendedXyzOfOtherPrograms) {
   // ASE: no identity, keys in any order, a key without a value, quotes of either kind.
   put_file(file(),
            "2\nProperties=pos:R:3:species:S:1:velo:R:3 energy=-1.5 converged Lattice='8 0 0 0 9 0 0 0 1' "
-           "pbc=\"T F F\" "
-           "Time=0.5\n1 2 0 Si 0.5 0.25 0\n7.9 3 0 Si 0 0 0\n\n");
+           "pbc=\"T F F\" Time=0.5\n1 2 0 Si 0.5 0.25 0\n7.9 3 0 Si 0 0 0\n\n");
   const MemoryTrajectory t = read("xyz", {});
   ASSERT_EQ(t.n_frames(), 1U);
   EXPECT_EQ(t.frames()[0].time, 0.5);

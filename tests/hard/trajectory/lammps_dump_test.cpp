@@ -220,8 +220,7 @@ TEST_F(Dump, MalformedOnesAreRefusedByLine) {
   EXPECT_EQ(refusal(frame_text(0, "ff ff ff", "id x y z", {"1 1 1 0.3"})), "accepted");
   EXPECT_EQ(refusal(frame_text(0, "ff ff ff", "id x y z", {"1 1 1 0.3", "2 3 1 0.5"})),
             "d:11: bead 2 is at z = 0.5, not in the plane z = 0.3 of the first bead; is this a "
-            "three-dimensional system "
-            "(--dimension 3)?");
+            "three-dimensional system (--dimension 3)?");
 }
 
 TEST_F(Dump, OptionsThatDoNotFitAreRefused) {

@@ -72,8 +72,7 @@ const Seen& seen(const std::string& name, double snr) {
   const Marks::Summary& m = s.marks;
   std::printf(
       "%-16s SNR %5g: recall %.5f, precision %.5f, rms %.5f px, %.3f x bound, bias %+.5f %+.5f, locking "
-      "%.5f, "
-      "largest %.3f\n",
+      "%.5f, largest %.3f\n",
       name.c_str(), snr, m.recall, m.precision, m.rms, m.rms / m.bound, m.bias_x, m.bias_y, m.locking,
       m.largest);
   return s;

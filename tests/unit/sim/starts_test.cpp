@@ -59,8 +59,7 @@ TEST(Starts, ConditionsFollowTheScene) {
   EXPECT_FALSE(conditions_of(scene_with(crystal), {}).n_l);
   const Scene weak = read_scene_text(
       "preset = \"fortini-huang-2015\"\nbeads.count = 40\ncell.gravity = 0.5\n[drive]\namplitude = "
-      "1.0\nomega = "
-      "2.0\n",
+      "1.0\nomega = 2.0\n",
       "scene.toml");
   EXPECT_DOUBLE_EQ(conditions_of(weak, 40).gamma.value(), 8);  // A omega^2/g = 1 * 4/0.5
 }

@@ -30,8 +30,7 @@ TEST(Ramp, ABeadLeavesThePlateInTheFirstCycleOfGammaAboveOne) {
   const MemoryTrajectory frames =
       run("[cell]\nwidth = 2.0\n[beads]\ncount = 1\n[contact]\ntangential = \"none\"\ngamma_n = 500.0\n"
           "[drive]\ngamma = 0.8\nomega = 1.0\n[drive.ramp]\ngamma = 1.2\n[time]\ndiscard = 2\ncycles = "
-          "20\nphases = "
-          "100\nsamples = 0\n");
+          "20\nphases = 100\nsamples = 0\n");
   std::int64_t left = -1;
   double closest = -1;
   for (const Frame& f : frames.frames()) {
@@ -183,10 +182,9 @@ TEST(HorizontalDrive, IsTheDriveAlongXIfNothingMovesAlongZ) {
 MemoryTrajectory in_a_box(double phase) {
   return run(
       fmt::format("[cell]\nwidth = 1.0\nheight = 1.0\nlid = \"wall\"\ngravity = 0.0\n[beads]\ncount = "
-                  "1\n[contact]\ntangential "
-                  "= \"none\"\nk_n = 1e5\ngamma_n = 500.0\n[drive]\namplitude = 0.5\nomega = "
-                  "2.0\n[drive.horizontal]\namplitude "
-                  "= 0.5\nphase = {}\n[time]\ndiscard = 1\ncycles = 2\nphases = 40\ncontacts = true\n",
+                  "1\n[contact]\ntangential = \"none\"\nk_n = 1e5\ngamma_n = 500.0\n[drive]\namplitude = "
+                  "0.5\nomega = 2.0\n[drive.horizontal]\namplitude = 0.5\nphase = {}\n[time]\ndiscard = "
+                  "1\ncycles = 2\nphases = 40\ncontacts = true\n",
                   phase));
 }
 

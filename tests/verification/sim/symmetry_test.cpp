@@ -239,8 +239,7 @@ bool same_motion(const Bead& a, const Bead& b) {
 TEST(Symmetry, MirrorImagesStayMirrorImages) {  // V4.14, H12
   const Scene scene = read_scene_text(
       "preset = \"fortini-huang-2015\"\n[beads]\ncount = 78\n[drive]\ngamma = 2.0\n[time]\nsteps_per_contact "
-      "= "
-      "20\n",
+      "= 20\n",
       "mirror");
   const Plan plan = make_plan(scene);
   const auto run = [&](System s) {
