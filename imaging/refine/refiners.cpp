@@ -10,7 +10,8 @@ namespace twincell::imaging {
 namespace {
 
 // The list of refiners; the first is the default.
-constexpr std::array kRefiners = {kExactRefiner, kFastRefiner, kEdgeRefiner, kProfileRefiner, kOverlappingRefiner};
+constexpr std::array kRefiners = {kExactRefiner, kFastRefiner, kEdgeRefiner, kProfileRefiner,
+                                  kOverlappingRefiner};
 
 }  // namespace
 
