@@ -19,8 +19,7 @@ inline constexpr std::size_t kLongestVelocityLag = 32;  ///< frames
 ///
 /// - vacf: [lags] C, for lags of 0 to 32 frames; NaN where no frames are that far apart
 /// - vacf_low, vacf_high: [lags] ends of its 95 % interval, from block averages over frames; NaN at lag 0,
-/// where
-///   C = 1 by definition
+///   where C = 1 by definition
 /// - vacf_lag: [lags] t, t0
 ///
 /// Absent without velocities. Allen & Tildesley, Computer Simulation of Liquids, sec. 2.7.

@@ -11,13 +11,11 @@
 /// 1. Selection. Of all proposals, the one that explains most of the picture beyond those already taken is
 ///    taken, until none explains a tenth of a disc. A disc behind another explains its crescent.
 /// 2. Fit. Centre, radius and darkness of each disc by Gauss-Newton steps, with the other discs fixed, and
-/// the
-///    blur of all discs; the radii and the darkness have their scatter from disc to disc as priors. A pixel
-///    counts by what the other discs transmit there.
+///    the blur of all discs; the radii and the darkness have their scatter from disc to disc as priors. A
+///    pixel counts by what the other discs transmit there.
 /// 3. What no longer explains a tenth of a disc is dropped. Where the picture is darker than the discs,
-/// further
-///    discs are selected, and the fit is repeated. A disc that is larger than the others is replaced by two,
-///    if these describe the picture better.
+///    further discs are selected, and the fit is repeated. A disc that is larger than the others is replaced
+///    by two, if these describe the picture better.
 ///
 /// When not to use: for discs of one layer picture_fit.hpp is faster and as accurate, and finds discs of
 /// which less is seen.

@@ -54,8 +54,7 @@ std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const Loca
 /// \param tried the preferred ones first; those without positive evidence are never chosen
 /// \param clearly the factor 1.25
 /// \returns none chosen if the largest evidence of round discs is below 5 nats a disc, or below half of that
-/// of
-///     what is not round
+///   of what is not round
 SettingsChoice choose(std::vector<TriedSettings> tried, double clearly = kClearly);
 
 /// Chooses, then fits the region with the chosen settings in full: a fit that was cut short may hold discs
