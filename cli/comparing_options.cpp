@@ -32,6 +32,9 @@ void add_comparing_flags(CLI::App& verb, ComparingFlags& flags) {
 
 twin::ComparingOptions comparing_options(const ComparingFlags& flags, const Common& common) {
   require_range({.file = {}, .key = "--tolerance"}, flags.tolerance, 0, 0.5);
+  // Refused before the simulations, although the analysis checks it again.
+  if (flags.neighbour_cutoff)
+    require_range({.file = {}, .key = "--cutoff"}, *flags.neighbour_cutoff, 0, 100, true);
   twin::ComparingOptions options;
   options.analysis.discard_cycles = flags.discard_cycles;
   options.analysis.neighbour_cutoff = flags.neighbour_cutoff;

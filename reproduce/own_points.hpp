@@ -9,11 +9,14 @@
 
 namespace twincell::reproduce {
 
-/// The numbers of a column, which are above 0 like all quantities that the figures compare.
-/// \param may_lack whether a field may be empty: NaN, no point
-/// \throws ConfigError as Table::column; InputError naming the file, the column and the row of a number that
-/// is not above 0, or is missing
-const std::vector<double>& positive_column(const Table& table, const std::string& name,
-                                           bool may_lack = false);
+/// What a column may hold besides numbers above 0.
+struct Allowed {
+  bool empty = false;  ///< an empty field: NaN, no point
+  bool zero = false;   ///< 0: the temperature of a bed that moves as one
+};
+
+/// The numbers of a column. None is negative, like all quantities that the figures compare.
+/// \throws ConfigError as Table::column; InputError naming the file, the column and the row of another number
+const std::vector<double>& own_column(const Table& table, const std::string& name, Allowed allowed = {});
 
 }  // namespace twincell::reproduce

@@ -227,9 +227,9 @@ struct Filmed {
 std::vector<Filmed> filmed_in(const std::filesystem::path& file) {
   if (file.empty()) return {};
   const Table table = read_table(file);
-  const auto& layers = positive_column(table, "N_l");
-  const auto& bouncing = positive_column(table, "bouncing", true);
-  const auto& convection = positive_column(table, "convection", true);
+  const auto& layers = own_column(table, "N_l");
+  const auto& bouncing = own_column(table, "bouncing", {.empty = true});
+  const auto& convection = own_column(table, "convection", {.empty = true});
   std::vector<Filmed> points;
   for (std::size_t i = 0; i < layers.size(); ++i) points.push_back({layers[i], bouncing[i], convection[i]});
   std::sort(points.begin(), points.end(),

@@ -114,8 +114,8 @@ std::vector<Estimate> measured_of(const std::vector<GasPoint>& points, bool of_h
 /// Points from the user's columns W and T_bar_z (or delta_h_bar): y is the second column times V_p^2 = W.
 std::vector<calibration::DataPoint> of_user(const std::filesystem::path& path, bool of_height) {
   const Table table = read_table(path);
-  const auto &w = positive_column(table, "W"),
-             &y = positive_column(table, of_height ? "delta_h_bar" : "T_bar_z");
+  const auto &w = own_column(table, "W"),
+             &y = own_column(table, of_height ? "delta_h_bar" : "T_bar_z", {.zero = true});
   std::vector<calibration::DataPoint> all;
   for (std::size_t k = 0; k < w.size(); ++k) all.push_back({.x = std::sqrt(w[k]), .y = y[k] * w[k]});
   return all;

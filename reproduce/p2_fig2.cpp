@@ -191,8 +191,9 @@ std::string both_starts(const Gas& gas, const Runs& runs) {
 std::optional<Series> own_of(const Request& request) {
   if (request.data.empty()) return std::nullopt;
   const Table table = read_table(request.data);
-  Series s{.title = "yours", .x = positive_column(table, "W"), .y = {}};
-  for (const double t : positive_column(table, "T_bar_z")) s.y.push_back({.value = t, .low = {}, .high = {}});
+  Series s{.title = "yours", .x = own_column(table, "W"), .y = {}};
+  for (const double t : own_column(table, "T_bar_z"))
+    s.y.push_back({.value = t, .low = {}, .high = {}});
   return s;
 }
 
