@@ -111,6 +111,9 @@ twin::Twin add_twin(const Common& common, const MatchOptions& o, const twin::Twi
   twin::Twin twin =
       twin::make_twin(options, folder, provenance_of(common, options, o.locating), progress_bars(common));
   if (!twin.phases.warning.empty()) note(common, twin.phases.warning + ".");
+  if (!twin.missing_beads.empty())
+    note(common, fmt::format("{}: {} ({} are in its first packing).", of_stack.stack.string(),
+                             twin.missing_beads, twin.beads));
   if (twin.records_transient())
     note(common,
          fmt::format(

@@ -137,6 +137,7 @@ void run(TrackOptions& o, const Common& common) {
     note(common,
          "the stated drive does not fit the film: " + film.check.disagreement + " (--trust-stated-drive).");
   if (!stack.phases.warning.empty()) note(common, stack.phases.warning + ".");
+  if (const std::string missing = stack.missing_beads(); !missing.empty()) note(common, missing + ".");
   const imaging::FrameRange range = imaging::frames_of(o.film.locating);
   // Write the trajectory, then the table.
   Provenance provenance = common.provenance();

@@ -179,6 +179,7 @@ void track_experiment(imaging::FrameSource& frames, FilmedCell& filmed, calibrat
                            phases, twin.experiment.parent_path(), options.region);
   cell.phase_lock.frames_per_cycle = stack.phases.frames_per_cycle;
   twin.phases = stack.phases;
+  twin.missing_beads = stack.missing_beads();
   imaging::TrackPlan plan = imaging::plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
   if (checks_drive(filmed, options) && check.by.empty()) {
     calibration::BedSteps bed(plan.info);

@@ -67,6 +67,7 @@ struct Twin {
   double fall = 0;              ///< mean fall of the beads of the first packing while they settle, sigma
   std::string drive;            ///< measured drive in a sentence; empty if the cell states the drive
   imaging::PhaseTable phases;   ///< of the stack
+  std::string missing_beads;    ///< LinkedDetections::missing_beads of the stack
 
   /// Whether the film begins in mid-motion and the simulations record their way from rest to that motion:
   /// nothing is discarded and the first packing falls by more than 0.1 sigma.

@@ -33,6 +33,8 @@ class DetectionStore {
   /// Number of frames.
   [[nodiscard]] std::size_t size() const { return ends_.size(); }
   [[nodiscard]] bool empty() const { return ends_.empty(); }
+  /// Number of beads in frame f.
+  [[nodiscard]] std::size_t count(std::size_t f) const { return ends_[f] - (f > 0 ? ends_[f - 1] : 0); }
   /// The beads of frame f.
   /// \throws RunError if they cannot be read back
   [[nodiscard]] std::vector<TrackedBead> operator[](std::size_t f) const;

@@ -1,5 +1,8 @@
 #include "imaging/track/link_detections.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -116,6 +119,21 @@ std::vector<std::int64_t> LinkedDetections::broken_tracers() const {
     if (tracks[t].is_tracer() && (tracks[t].first > 0 || tracks[t].last < end))
       broken.push_back(static_cast<std::int64_t>(t));
   return broken;
+}
+
+std::string LinkedDetections::missing_beads() const {
+  constexpr double kConstant = 0.95;
+  std::size_t fewest = frames.empty() ? 0 : frames.count(0), most = fewest;
+  for (std::size_t f = 1; f < frames.size(); ++f) {
+    fewest = std::min(fewest, frames.count(f));
+    most = std::max(most, frames.count(f));
+  }
+  if (static_cast<double>(fewest) >= kConstant * static_cast<double>(most)) return {};
+  return fmt::format(
+      "the frames hold {} to {} beads: beads leave the picture, or are not found in every frame; N_l, the "
+      "results and "
+      "a twin count only those that are seen",
+      fewest, most);
 }
 
 namespace {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/progress.hpp"
@@ -46,6 +47,9 @@ struct LinkedDetections {
   /// Tracks of tracers (by majority of frames) that do not span the first frame to the last: the tracer's
   /// identity was lost, or the tracer entered or left.
   [[nodiscard]] std::vector<std::int64_t> broken_tracers() const;
+  /// A sentence, without a full stop, if some frame holds less than 0.95 of the beads of another: beads leave
+  /// the picture, or are not found in every frame. Empty otherwise.
+  [[nodiscard]] std::string missing_beads() const;
 };
 
 /// Determines the phase of each frame, then links. A frame taken twice is linked with interval 0. A stated
