@@ -137,7 +137,9 @@ void run(LocateOptions& o, const Common& common) {
   ProgressBar bar(common, "locate");
   imaging::RegionFrames seen(*stack, region);
   imaging::FramesAhead ahead(seen);
-  const auto [locator, settings_index, choice] = find_settings(ahead, given, o, common);
+  const imaging::LocatorConfiguration found = find_settings(ahead, given, o, common);
+  const imaging::LocatorOptions& locator = found.locator;
+  const imaging::SettingsChoice& choice = found.choice;
 
   std::optional<LocateView> view;
   if (!o.view.empty()) view.emplace(o.locating, region, locator, choice);
@@ -158,7 +160,7 @@ void run(LocateOptions& o, const Common& common) {
   if (!o.truth.empty()) imaging::require_scored(located_frames.score(), o.truth);
   if (view) write_text_file(o.view, view->page(o.stack, o.output, n), locate_page());
 
-  const std::int64_t settings_frame = range.number(settings_index);
+  const std::int64_t settings_frame = range.number(found.frame);
   const std::string& refine = given.refine.method;
   const std::string of_settings = settings_warnings(choice, refine), doubts = located_frames.doubts();
   nlohmann::json document = located_frames.document();

@@ -167,6 +167,7 @@ StrengthSweep make_strength_sweep(const std::string& start, const std::vector<Sw
     if (run.eligible > 0) point.p_s_of_runs.push_back(run.slips / run.eligible);
   }
   std::vector<SweepPoint> rising;
+  rising.reserve(points.size());
   for (const auto& [gamma, point] : points) rising.push_back(point);
   return find_regions(start, std::move(rising));
 }

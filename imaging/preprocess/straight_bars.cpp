@@ -79,6 +79,7 @@ std::vector<BarLine> straight_lines(const std::vector<BarLine>& found, int reach
 /// A bead that touches the bar from inside seems to widen it, so that the narrow lines show its width.
 int width_of(const std::vector<BarLine>& lines) {
   std::vector<int> widths;
+  widths.reserve(lines.size());
   for (const BarLine& line : lines) widths.push_back(line.light - line.first);
   const auto quarter = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 4);
   std::nth_element(widths.begin(), quarter, widths.end());
