@@ -16,6 +16,7 @@
 #include "cli/output.hpp"
 #include "cli/settings_table.hpp"
 #include "cli/stack_info.hpp"
+#include "cli/truth_options.hpp"
 #include "cli/verb.hpp"
 #include "core/counted.hpp"
 #include "core/error.hpp"
@@ -31,8 +32,8 @@ namespace twincell::cli {
 namespace {
 
 struct LocateOptions {
-  std::string stack, output, overlay, view, truth, candidates, debug_folder;
-  std::vector<double> scored_rows;
+  std::string stack, output, overlay, view, candidates, debug_folder;
+  TruthOptions truth;
   std::int64_t overlay_frame = -1;  // -1: the first that is read
   bool explain = false;
   imaging::LocatingRequest locating;
@@ -66,10 +67,8 @@ std::string default_output(const std::string& stack) {
 
 LocatedFrames tables_and_score(const LocateOptions& o) {
   std::optional<TruthOfFrames> truth;
-  if (!o.truth.empty()) truth = imaging::read_truth(o.truth);
-  imaging::ScoredRows rows;
-  if (o.scored_rows.size() == 2) rows = {o.scored_rows[0], o.scored_rows[1]};
-  return {o.output, o.candidates, std::move(truth), rows};
+  if (!o.truth.file.empty()) truth = imaging::read_truth(o.truth.file);
+  return {o.output, o.candidates, std::move(truth), o.truth.rows()};
 }
 
 /// Finds the settings that were not given. With --explain, those of a picture that is refused are printed.
@@ -157,7 +156,7 @@ void run(LocateOptions& o, const Common& common) {
   imaging::check_flat(o.locating.flat, locator.preprocess.bright);
 
   located_frames.commit();
-  if (!o.truth.empty()) imaging::require_scored(located_frames.score(), o.truth);
+  if (!o.truth.file.empty()) imaging::require_scored(located_frames.score(), o.truth.file);
   if (view) write_text_file(o.view, view->page(o.stack, o.output, n), locate_page());
 
   const std::int64_t settings_frame = range.number(found.frame);
@@ -229,11 +228,7 @@ void add_locate(CLI::App& program, Common& common) {
       "--explain", o->explain,
       "Print all settings that were tried, the evidence of the picture for each, and by how much the "
       "chosen ones won");
-  verb.add_option("--truth", o->truth,
-                  "Score the result against the ground truth: truth.csv, or a folder of truth_NN.csv");
-  verb.add_option("--scored-rows", o->scored_rows,
-                  "First and last row of pixels that is scored, px; default: all rows")
-      ->expected(2);
+  add_truth_options(verb, o->truth);
   verb.callback([o, &common] { run(*o, common); });
 }
 

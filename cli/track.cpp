@@ -16,6 +16,7 @@
 #include "cli/phase_options.hpp"
 #include "cli/profile.hpp"
 #include "cli/stack_info.hpp"
+#include "cli/truth_options.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
 #include "core/counted.hpp"
@@ -31,8 +32,8 @@ namespace twincell::cli {
 namespace {
 
 struct TrackOptions {
-  std::string stack, output, csv, truth;
-  std::vector<double> scored_rows;
+  std::string stack, output, csv;
+  TruthOptions truth;
   calibration::FilmOptions film;
   bool profile = false;
 };
@@ -57,15 +58,10 @@ void write_csv(const std::string& path, const imaging::TrackedStack& stack,
   file.commit();
 }
 
-imaging::Scorer scorer_of(const TrackOptions& o) {
-  return imaging::Scorer(o.scored_rows.size() == 2 ? imaging::ScoredRows{o.scored_rows[0], o.scored_rows[1]}
-                                                   : imaging::ScoredRows{});
-}
-
 imaging::Score score_against(const TrackOptions& o, const imaging::TrackedStack& stack,
                              const imaging::FrameRange& range) {
-  const auto truth = imaging::read_truth(o.truth);
-  imaging::Scorer scorer = scorer_of(o);
+  const auto truth = imaging::read_truth(o.truth.file);
+  imaging::Scorer scorer(o.truth.rows());
   for (std::size_t f = 0; f < stack.frames.size(); ++f) {
     const auto number = static_cast<std::size_t>(range.number(static_cast<std::int64_t>(f)));
     if (number >= truth.size()) break;
@@ -74,7 +70,7 @@ imaging::Score score_against(const TrackOptions& o, const imaging::TrackedStack&
     scorer.add(truth[number], found);
   }
   const imaging::Score score = scorer.score();
-  imaging::require_scored(score, o.truth);
+  imaging::require_scored(score, o.truth.file);
   return score;
 }
 
@@ -111,7 +107,7 @@ std::string describe(const imaging::TrackedStack& stack) {
 
 void run(TrackOptions& o, const Common& common) {
   Profile profile(o.profile);
-  (void)scorer_of(o);  // refuse rows in the wrong order before the work
+  (void)imaging::Scorer(o.truth.rows());  // refuse rows in the wrong order before the work
   const std::filesystem::path parent = std::filesystem::path(o.output).parent_path();
   o.film.folder = parent.empty() ? "." : parent;
   o.film.threads = common.n_threads();
@@ -187,7 +183,7 @@ void run(TrackOptions& o, const Common& common) {
         "--diameter D1 D2 ...\n",
         stack.wrong_radius);
   text += describe(stack);
-  if (!o.truth.empty()) {
+  if (!o.truth.file.empty()) {
     const imaging::Score s = score_against(o, stack, range);
     document["truth"] = {{"recall", s.recall()},
                          {"precision", s.precision()},
@@ -263,11 +259,7 @@ void add_track(CLI::App& program, Common& common) {
   writes(common, verb,
          verb.add_option("--csv", o->csv, "Table of tracks to write (CSV, trackpy's columns and more)"),
          Product::table(kHeading));
-  verb.add_option("--truth", o->truth,
-                  "Score the result against the ground truth: truth.csv, or a folder of truth_NN.csv");
-  verb.add_option("--scored-rows", o->scored_rows,
-                  "First and last row of pixels that is scored, px; default: all rows")
-      ->expected(2);
+  add_truth_options(verb, o->truth);
   add_profile_option(verb, o->profile);
   verb.callback([o, &common] { run(*o, common); });
 }

@@ -136,9 +136,7 @@ std::string region(const char* name, double from, double to) {
 std::string panel_of(const StrengthSweep& l, int layers, std::size_t index,
                      const std::optional<calibration::CurveFit>& bend, double last) {
   std::string plot = "unset arrow\nunset label\n" +
-                     analysis::figure_style::panel_title(
-                         static_cast<char>('a' + index),
-                         fmt::format("{}, N_l = {}", l.is_random() ? "random" : "crystal", layers));
+                     analysis::figure_style::panel_title(static_cast<char>('a' + index), title_of(l, layers));
   if (l.is_random()) plot += analysis::figure_style::stated_x(kBreak);
   if (l.convection) {
     plot += border_of_region(l.convection->value) + region("B", l.convection->value, last);

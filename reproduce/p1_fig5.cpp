@@ -186,9 +186,7 @@ std::string panel_of(const StrengthSweep& l, int layers, std::size_t index, cons
       "p_s\n{3}\n\n",
       l.start, layers, counted.empty() ? "? ? ? ?\n" : counted, none.empty() ? "? ?\n" : none);
   std::string plot = analysis::figure_style::axes(inverse, p_s) + "unset arrow\nunset label\n" +
-                     analysis::figure_style::panel_title(
-                         static_cast<char>('a' + index),
-                         fmt::format("{}, N_l = {}", l.is_random() ? "random" : "crystal", layers));
+                     analysis::figure_style::panel_title(static_cast<char>('a' + index), title_of(l, layers));
   std::string lines;
   const auto name = [&](const char* region, double from, double to) {
     plot +=

@@ -311,9 +311,8 @@ std::string text_of(const StrengthSweeps& sweeps) {
   std::string text;
   for (const HeightSweeps& height : sweeps.heights)
     for (const StrengthSweep* l : {&height.random, &height.crystal}) {
-      text += fmt::format("  {}, N_l = {}\n  {:>6} {:>7} {:>5} {:>24} {:>10} {:>20}\n",
-                          l->is_random() ? "random" : "crystal", height.layers, "Gamma", "K_m", "runs",
-                          "T_g*", "convecting", "slips");
+      text += fmt::format("  {}\n  {:>6} {:>7} {:>5} {:>24} {:>10} {:>20}\n", title_of(*l, height.layers),
+                          "Gamma", "K_m", "runs", "T_g*", "convecting", "slips");
       for (const SweepPoint& r : l->points)
         text += fmt::format("  {:6.2f} {:7.3f} {:5} {:>24} {:>10} {:>20}\n", r.gamma, r.k_m(), r.runs,
                             r.mean_temperature().text(), r.convecting,
@@ -428,6 +427,10 @@ namespace {
 constexpr const char *kRandomColour = analysis::colours::kGreen, *kCrystalColour = analysis::colours::kBlue;
 constexpr const char* kBorder = "lw 1 dt 2 lc rgb '#666666'";
 }  // namespace
+
+std::string title_of(const StrengthSweep& sweep, int layers) {
+  return fmt::format("{}, N_l = {}", sweep.is_random() ? "random" : "crystal", layers);
+}
 
 const char* colour_of(const StrengthSweep& sweep) {
   return sweep.is_random() ? kRandomColour : kCrystalColour;

@@ -99,6 +99,9 @@ std::vector<Target> targets_at_heights(const StrengthSweeps& sweeps,
 /// Common output of the figures: K_m, T_g and slips of every point as text and as JSON, and the conditions.
 Reproduction reproduction_of(const StrengthSweeps& sweeps, const std::string& title);
 
+/// "random, N_l = 20": the title of a start at one height.
+std::string title_of(const StrengthSweep& sweep, int layers);
+
 /// Look of both figures: colour and gnuplot point type of a start, and gnuplot commands for the border of a
 /// region at a value of the x axis; entries in the key for the starts and the borders.
 const char* colour_of(const StrengthSweep& sweep);

@@ -11,6 +11,7 @@
 
 #include "core/error.hpp"
 #include "sim/device/bed_memory.hpp"
+#include "sim/stepping/contact_memories.hpp"
 #include "sim/stepping/packed_beads.hpp"
 
 namespace twincell::sim {
@@ -18,8 +19,6 @@ namespace twincell::sim {
 namespace {
 
 using Size = std::size_t;
-using Key = std::pair<std::int32_t, std::int32_t>;
-using Memories = std::map<Key, std::vector<double>>;
 
 /// Skin of the neighbour list, in diameters of the median bead. Wider than that of the list solver: a build
 /// tests all pairs.
@@ -96,14 +95,10 @@ class DeviceSolver : public Solver {
     return memory_ == nullptr ? builds_ : here_.report->builds;
   }
   void rebuild_every(std::int64_t n) override { there_.rebuild_every = n; }
-  [[nodiscard]] std::vector<ContactMemory> contacts() const override {
-    std::vector<ContactMemory> all;
-    for (const auto& [key, memory] : memories()) all.push_back({key.first, key.second, memory});
-    return all;
-  }
+  [[nodiscard]] std::vector<ContactMemory> contacts() const override { return sorted_list(memories()); }
   void restore(std::vector<ContactMemory> contacts) override {
     keep_memories();
-    for (ContactMemory& c : contacts) kept_[{c.i, c.j}] = std::move(c.values);
+    add_list(kept_, std::move(contacts));
   }
   [[nodiscard]] std::string description() const override { return batcher_.executor().description(); }
   [[nodiscard]] Counters counters() const override { return counters_; }
@@ -119,8 +114,8 @@ class DeviceSolver : public Solver {
   // --- contact memory ---
 
   /// Remembered numbers of all contacts with nonzero memory.
-  [[nodiscard]] Memories memories() const {
-    Memories all = kept_;
+  [[nodiscard]] ContactMemories memories() const {
+    ContactMemories all = kept_;
     if (memory_ == nullptr || remembered_ == 0) return all;
     batcher_.executor().read(image() + parts_.state, memory_ + parts_.state, parts_.contacts - parts_.state);
     const auto add = [&](std::int32_t i, std::int32_t j, const double* numbers) {
@@ -233,7 +228,8 @@ class DeviceSolver : public Solver {
   }
   /// Lists the contacts in `kept_`, from which the first build of the device takes their memory.
   void list_kept(const std::vector<std::int32_t>& first) {
-    std::map<Key, const std::vector<double>*> of_beads;  // by bead and partner, so each pair twice
+    std::map<ContactMemories::key_type, const std::vector<double>*>
+        of_beads;  // by bead and partner, so each pair twice
     for (const auto& [key, memory] : kept_) {
       const auto [i, j] = key;
       if (j < 0) {
@@ -327,7 +323,7 @@ class DeviceSolver : public Solver {
   BedParts parts_{};
   mutable std::vector<double> image_;  ///< copy of that memory
   DeviceBed here_{}, there_{};         ///< the bed in the image, and in memory of the device
-  Memories kept_;                      ///< contact memory while the bed is not on the device
+  ContactMemories kept_;               ///< contact memory while the bed is not on the device
   std::int64_t builds_ = 0;            ///< before the last arrange()
   Counters counters_;
 };

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "sim/kernels/subnormals.hpp"
+#include "sim/stepping/contact_memories.hpp"
 #include "sim/stepping/list_solver.hpp"
 #include "sim/stepping/packed_beads.hpp"
 #include "sim/system/cell_grid.hpp"
@@ -82,22 +83,16 @@ class AllPairsSolver : public Solver {
   }
   [[nodiscard]] std::int64_t list_builds() const override { return 0; }
   void rebuild_every(std::int64_t) override {}
-  [[nodiscard]] std::vector<ContactMemory> contacts() const override {
-    std::vector<ContactMemory> all;
-    for (const auto& [key, memory] : memories()) all.push_back({key.first, key.second, memory});
-    return all;
-  }
+  [[nodiscard]] std::vector<ContactMemory> contacts() const override { return sorted_list(memories()); }
   void restore(std::vector<ContactMemory> contacts) override {
     keep_memories();
-    for (ContactMemory& c : contacts) kept_[{c.i, c.j}] = std::move(c.values);
+    add_list(kept_, std::move(contacts));
   }
   [[nodiscard]] std::string description() const override {
     return fmt::format("all pairs, {} {} at a time", width_, width_ == 1 ? "contact" : "contacts");
   }
 
  private:
-  using Memories = std::map<std::pair<std::int32_t, std::int32_t>, std::vector<double>>;
-
   [[nodiscard]] std::int32_t record(Size place) const {
     return static_cast<std::int32_t>(place) * (plan_.dimension == 2 ? kRecord<2> : kRecord<3>);
   }
@@ -150,8 +145,8 @@ class AllPairsSolver : public Solver {
     arranged_ = true;
   }
   /// Remembered numbers of all contacts with nonzero memory.
-  [[nodiscard]] Memories memories() const {
-    Memories all = kept_;
+  [[nodiscard]] ContactMemories memories() const {
+    ContactMemories all = kept_;
     const auto add = [&](const Packets& p, Size k, std::int32_t i, std::int32_t j) {
       std::vector<double> memory(memory_);
       for (Size m = 0; m < memory_; ++m) memory[m] = p.memory[place(k, m, memory_)];
@@ -254,7 +249,7 @@ class AllPairsSolver : public Solver {
   Lines reference_;
   Packets pairs_;
   std::vector<Packets> walls_;
-  Memories kept_;  ///< memory from before the last arrange()
+  ContactMemories kept_;  ///< memory from before the last arrange()
   bool arranged_ = false;
 };
 

@@ -8,18 +8,13 @@
 #include <fstream>
 #include <sstream>
 
+#include "tests/support/file_bytes.hpp"
 #include "tests/support/program.hpp"
 
 namespace twincell {
 namespace {
 
 constexpr int kDone = 0, kFailed = 1, kUsage = 2;
-
-std::string bytes_of(const std::string& path) {
-  std::ostringstream all;
-  all << std::ifstream(path, std::ios::binary).rdbuf();
-  return all.str();
-}
 
 class SweepOnDevice : public ::testing::Test {
  protected:

@@ -11,6 +11,7 @@
 
 #include "core/hdf5.hpp"
 #include "tests/support/camera_files.hpp"
+#include "tests/support/file_bytes.hpp"
 #include "tests/support/program.hpp"
 
 namespace twincell {
@@ -37,12 +38,6 @@ std::vector<cv::Mat> discs() {
 
 void put(const fs::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
-}
-
-std::string text_of(const fs::path& path) {
-  std::ostringstream all;
-  all << std::ifstream(path, std::ios::binary).rdbuf();
-  return all.str();
 }
 
 class Frames : public ::testing::Test {
@@ -100,7 +95,7 @@ TEST_F(Frames, TheSameInEveryFormatAndForAnyNumberOfThreads) {
         {"locate", at(name), "--diameter", "15", "-o", at("beads.csv"), "--threads", threads, "-q"});
     EXPECT_EQ(ran.code, 0) << ran.err;
     EXPECT_EQ(ran.err, "");
-    return text_of(at("beads.csv"));
+    return bytes_of(at("beads.csv"));
   };
   const std::string beads = located("folder", "1");
   ASSERT_EQ(std::count(beads.begin(), beads.end(), '\n'), 1 + 12 * kFrames) << beads;
@@ -123,7 +118,7 @@ TEST_F(Frames, AreDividedByAFlatField) {
   for (const std::string& flat : {std::string("stack"), at("blank.png")}) {
     const Ran ran = located({"--flat", flat});
     EXPECT_EQ(ran.code, 0) << ran.err;
-    const std::string beads = text_of(at("beads.csv"));
+    const std::string beads = bytes_of(at("beads.csv"));
     EXPECT_EQ(std::count(beads.begin(), beads.end(), '\n'), 1 + 12 * kFrames) << flat;
   }
   const auto refused = [&](const std::vector<std::string>& options, int code, const std::string& why) {
@@ -210,8 +205,8 @@ TEST_F(Frames, WhatCannotBeReadIsRefusedInOneLine) {
   put(at("text.seq"), "hello\n");
   put(at("notes.txt"), "hello\n");
   put(at("lone.mraw"), "planes");
-  put(at("cut.cine"), text_of(at("a.cine")).substr(0, 50000));
-  put(at("cut.tif"), text_of(at("a.tif")).substr(0, 50000));
+  put(at("cut.cine"), bytes_of(at("a.cine")).substr(0, 50000));
+  put(at("cut.tif"), bytes_of(at("a.tif")).substr(0, 50000));
   const auto before = names_in(folder_.path());
   for (const auto& [name, words] :
        std::vector<std::pair<std::string, std::string>>{{"empty.cine", "is empty"},

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "imaging/cell/cell.hpp"
+#include "tests/support/file_bytes.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/put_file.hpp"
 
@@ -37,12 +38,6 @@ fs::path copy_of(const TemporaryFolder& folder, const std::string& name, int n,
       fs::copy_file(kDemo / name / frame_name(f), stack / frame_name(f));
   }
   return stack;
-}
-
-std::string text_of(const fs::path& file) {
-  std::ostringstream all;
-  all << std::ifstream(file).rdbuf();
-  return all.str();
 }
 
 nlohmann::json run_json(std::vector<std::string> words, int code = 0) {
@@ -125,8 +120,8 @@ TEST(New, WithoutAnswersPlaceholdersAreLeftThatEveryVerbRefusesByName) {
   const Ran ran = run_program({"new", stack, "-o", cell});
   EXPECT_EQ(ran.code, 0) << ran.err;
   EXPECT_NE(ran.out.find("2 values are still needed"), std::string::npos) << ran.out;
-  EXPECT_NE(text_of(cell).find("sigma_mm = \"FILL IN: bead diameter in mm\""), std::string::npos)
-      << text_of(cell);
+  EXPECT_NE(bytes_of(cell).find("sigma_mm = \"FILL IN: bead diameter in mm\""), std::string::npos)
+      << bytes_of(cell);
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"track", stack, "--cell", cell, "-o", folder / "a.h5"},
         {"match", stack, cell, "-o", folder / "b"},
@@ -144,13 +139,13 @@ TEST(New, AnEditedCellIsNotReplacedWithoutForce) {
   const TemporaryFolder folder;
   const fs::path cell = folder / "CELL.toml", stack = copy_of(folder, "gamma-0.9", 20);
   ASSERT_EQ(run_program({"new", stack, "-o", cell, "-q"}).code, 0);
-  const std::string before = text_of(cell);
+  const std::string before = bytes_of(cell);
   const Ran ran = run_program({"new", stack, "-o", cell, "-q", "--drive-gamma", "0.9"});
   EXPECT_EQ(ran.code, 2);
   EXPECT_NE(ran.err.find("CELL.toml: is an earlier cell file"), std::string::npos) << ran.err;
-  EXPECT_EQ(text_of(cell), before);
+  EXPECT_EQ(bytes_of(cell), before);
   EXPECT_EQ(run_program({"new", stack, "-o", cell, "-q", "--drive-gamma", "0.9", "--force"}).code, 0);
-  EXPECT_NE(text_of(cell), before);
+  EXPECT_NE(bytes_of(cell), before);
 }
 
 TEST(New, SeveralStacksGetACellEachInOneFolder) {
@@ -173,8 +168,8 @@ TEST(New, OneFrameGivesBeadsWallsAndSaysThatTheMotionIsMissing) {
   const nlohmann::json d = without(copy_of(folder, "gamma-0.9", 1), cell, "the plate's motion", "1");
   EXPECT_TRUE(d["measured"].contains("camera.pixels_per_sigma")) << d.dump(1);
   EXPECT_TRUE(d["measured"].contains("cell.width_sigma"));
-  EXPECT_NE(text_of(cell).find("frames_per_cycle = \"FILL IN"), std::string::npos) << text_of(cell);
-  EXPECT_NE(text_of(cell).find("origin_px = \"FILL IN"), std::string::npos);
+  EXPECT_NE(bytes_of(cell).find("frames_per_cycle = \"FILL IN"), std::string::npos) << bytes_of(cell);
+  EXPECT_NE(bytes_of(cell).find("origin_px = \"FILL IN"), std::string::npos);
 }
 
 TEST(New, AFrameOfAnotherSizeEndsTheStackThere) {
@@ -205,7 +200,7 @@ TEST(New, AStackWithoutBeadsGivesWallsAndPlate) {
   const nlohmann::json d = without(stack, folder / "CELL.toml", "the bead diameter", "no round beads");
   EXPECT_TRUE(d["measured"].contains("camera.origin_px")) << d.dump(1);
   EXPECT_EQ(d["frames_per_cycle"], 20);
-  EXPECT_NE(text_of(folder / "CELL.toml").find("pixels_per_sigma = \"FILL IN"), std::string::npos);
+  EXPECT_NE(bytes_of(folder / "CELL.toml").find("pixels_per_sigma = \"FILL IN"), std::string::npos);
 }
 
 TEST(New, WithoutThePlateInThePictureItsKeysAreLeftOpen) {

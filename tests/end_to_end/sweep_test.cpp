@@ -12,6 +12,7 @@
 #include <regex>
 #include <thread>
 
+#include "tests/support/file_bytes.hpp"
 #include "tests/support/program.hpp"
 
 namespace twincell {
@@ -28,12 +29,6 @@ cell.width = 6.0
 beads.layers = 3
 time = { integrator = "split", steps_per_contact = 6.37, discard = 1, cycles = 4, phases = 10 }
 )";
-
-std::string bytes_of(const fs::path& path) {
-  std::ostringstream all;
-  all << std::ifstream(path, std::ios::binary).rdbuf();
-  return all.str();
-}
 
 class Sweeps : public ::testing::Test {
  protected:
