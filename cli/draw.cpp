@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "analysis/colouring/colouring.hpp"
@@ -25,15 +27,22 @@ struct DrawOptions {
   std::string trajectory, frames, colour = kPlain;
   std::vector<double> range;
   bool fps_said = false;
+  bool coloured = false;  ///< some bead of the drawn frames has a number
   imaging::DrawJob job;
 };
 
-/// ", speed 0 to 2.5 sigma/t0"
-std::string range_text(const DrawOptions& o, const std::array<double, 2>& range) {
-  std::string text =
-      fmt::format(", {} {:.4g} to {:.4g} {}", o.colour, range[0], range[1], o.job.colours.unit);
+/// Adds the range of the colours: ", speed 0 to 2.5 sigma/t0".
+void add_range(const DrawOptions& o, const std::array<double, 2>& range, nlohmann::json& document,
+               std::string& text) {
+  if (o.colour == kPlain) return;
+  if (!o.coloured) {
+    document["range"] = nullptr;
+    text += fmt::format(", no bead of which has a number for {}", o.colour);
+    return;
+  }
+  document["range"] = range;
+  text += fmt::format(", {} {:.4g} to {:.4g} {}", o.colour, range[0], range[1], o.job.colours.unit);
   while (text.back() == ' ') text.pop_back();
-  return text;
 }
 
 void write_page(const H5mdReader& trajectory, const DrawOptions& o, const Common& common) {
@@ -49,7 +58,7 @@ void write_page(const H5mdReader& trajectory, const DrawOptions& o, const Common
                              {"megabytes", megabytes},
                              {"colour", o.colour}};
   std::string text = fmt::format("{}, {:.3g} MB", counted(page.frames, "frame"), megabytes);
-  if (o.colour != kPlain) document["range"] = page.range, text += range_text(o, page.range);
+  add_range(o, page.range, document, text);
   print_result(common, document, fmt::format("{}\n{}\n", text, o.job.output.string()));
 }
 
@@ -66,7 +75,11 @@ void run(DrawOptions& o, const Common& common) {
     o.job.colours.name = colouring.word;
     o.job.colours.unit = colouring.unit;
     o.job.colours.of = [&](std::size_t index, const Frame& frame) {
-      return colouring.of({.source = trajectory, .index = index, .frame = frame});
+      const std::vector<double> numbers =
+          colouring.of({.source = trajectory, .index = index, .frame = frame});
+      o.coloured = o.coloured || std::any_of(numbers.begin(), numbers.end(),
+                                             [](double number) { return std::isfinite(number); });
+      return numbers;
     };
   }
   if (page) return write_page(trajectory, o, common);
@@ -82,10 +95,7 @@ void run(DrawOptions& o, const Common& common) {
                              {"colour", o.colour}};
   std::string text =
       fmt::format("{}, {} x {} px", counted(drawn.frames, "frame"), drawn.size.width, drawn.size.height);
-  if (o.colour != kPlain) {
-    document["range"] = drawn.range;
-    text += range_text(o, drawn.range);
-  }
+  add_range(o, drawn.range, document, text);
   print_result(common, document, fmt::format("{}\n{}\n", text, o.job.output.string()));
 }
 

@@ -38,7 +38,7 @@ struct ExportOptions {
 void export_scene(const ExportOptions& o, const Common& common) {
   std::vector<std::string> assignments = with_seed(o.assignments, common);
   sim::Scene scene = sim::read_scene(o.input, assignments);
-  protect_named_inputs(common, {scene.from, scene.record.file});
+  protect_named_inputs(common, scene.named_files());
   std::string otherwise;
   if (!scene.integrator_stated) {
     const double own = scene.steps_per_contact;

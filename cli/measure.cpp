@@ -44,7 +44,7 @@ struct Run {
 Run run_once(const MeasureOptions& options, const std::vector<std::string>& assignments,
              const std::string& start, const Common& common) {
   sim::Scene scene = sim::read_scene(options.scene, assignments);
-  protect_named_inputs(common, {scene.from, scene.record.file});
+  protect_named_inputs(common, scene.named_files());
   sweep::require_one_drive(scene);
   ProgressBar placing(common, "placing beads");
   sim::RunState state = sim::placed(scene, placing);

@@ -17,6 +17,7 @@
 #include <system_error>
 #include <utility>
 
+#include "cli/device_option.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_watch.hpp"
 #include "cli/verb.hpp"
@@ -37,7 +38,7 @@ using reproduce::Reproduction;
 using reproduce::Target;
 
 struct ReproduceOptions {
-  std::string name, output, runs, data, stored;
+  std::string name, output, runs, data, stored, device;
   std::optional<std::pair<double, double>> window;
   std::optional<double> budget;  ///< minutes; hours with --all
   bool full = false, all = false;
@@ -141,6 +142,8 @@ std::pair<nlohmann::json, std::string> make(const Reproducible& what, const Repr
           fmt::format("does not work for {}, whose runs take seconds: run it again.", what.name));
     stored = stored_document(from);
   }
+  // Before the folder is made: without a card nothing happens.
+  const Workers workers = workers_of(what.on_device ? options.device : "", common);
   claim_shared_folder(folder, Product::runs());
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   double core_minutes = stored ? unknown : earlier_cost(folder, what).value_or(unknown);
@@ -150,14 +153,15 @@ std::pair<nlohmann::json, std::string> make(const Reproducible& what, const Repr
   try {
     r = what.run({.minutes = share.minutes,
                   .full = options.full,
-                  .threads = common.n_threads(),
+                  .threads = workers.count,
                   .seed = common.seed.value_or(1),
                   .folder = folder,
                   .runs = runs_of(what, options, folder),
                   .window = options.window,
                   .data = options.data,
                   .stored = stored ? (*stored)["measured"].dump() : "",
-                  .watch = &watch});
+                  .watch = &watch,
+                  .solver = workers.solver});
   } catch (const nlohmann::json::exception&) {
     if (!stored) throw;
     throw InputError({from.string(), 0, 0, ""}, fmt::format("does not hold the runs of {}.", what.name));
@@ -209,6 +213,13 @@ void run_one(const ReproduceOptions& options, const Common& common) {
     throw ConfigError({"", 0, 0, "window"},
                       fmt::format("is {:g} to {:g}; the lower limit must be below the upper limit.",
                                   options.window->first, options.window->second));
+  if (!options.device.empty() && !what.on_device) {
+    std::vector<std::string> names;
+    for (const Reproducible& r : reproduce::list())
+      if (r.on_device) names.push_back(r.name);
+    throw ConfigError({"", 0, 0, "device"}, fmt::format("has no effect on {}; the beds of {} can run on one.",
+                                                        options.name, fmt::join(names, ", ")));
+  }
   const double minutes = options.budget.value_or(kDefaultMinutes);
   const auto [document, text] =
       make(what, options, {minutes, options.full ? 1e300 : 60 * minutes}, folder, options.stored, common);
@@ -331,6 +342,7 @@ void add_reproduce(CLI::App& program, Common& common) {
   verb.add_option("--data", options->data,
                   "Your own points (CSV), with the columns N_l, bouncing, convection (onsets in Gamma) for "
                   "p1-fig3, or W and T_bar_z (p2-table2: delta_h_bar) for p2-fig2, p2-table1 and p2-table2");
+  add_device_option(verb, options->device);
   verb.add_flag("--full", options->full, "Run everything that the paper shows, without a time limit")
       ->excludes(budget);
   verb.callback([options, &common] { run(*options, common); });

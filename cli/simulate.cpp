@@ -249,7 +249,7 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
   if (options.relax) assignments.emplace_back("start.relax=true");
   if (options.contacts) assignments.emplace_back("time.contacts=true");
   sim::Scene scene = sim::read_scene(options.scene, assignments);
-  protect_named_inputs(common, {scene.from, scene.record.file});
+  protect_named_inputs(common, scene.named_files());
   if (scene.until)
     note(common, fmt::format("[until] applies only to `measure` and `sweep`, which analyse during the run; "
                              "`simulate` runs all {} cycles.",

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/device_option.hpp"
 #include "cli/mpi_farm.hpp"
 #include "cli/output.hpp"
 #include "cli/profile.hpp"
@@ -151,26 +152,8 @@ std::optional<std::string> final_picture(const sweep::Schedule& schedule, const 
   }
 }
 
-/// Where the points are computed, and how many at once.
-struct Workers {
-  sim::SolverKind solver = sim::SolverKind::best;
-  int count = 1;
-};
-/// \throws ConfigError if there is no device
-Workers workers_of(const SweepOptions& options, const Common& common) {
-  if (options.device == "host") return {sim::SolverKind::device_on_host, common.n_threads()};
-  if (options.device != "gpu") return {sim::SolverKind::best, common.n_threads()};
-  constexpr int kPoints = 256;
-  const std::string card = sim::graphics_card();
-  note(common,
-       fmt::format("{}. The kernel was tested on processors only; it has never run on a graphics card. "
-                   "Compare some points with a run without --device.",
-                   card));
-  return {sim::SolverKind::gpu, common.threads > 0 ? common.threads : kPoints};
-}
-
 void run_run(const SweepOptions& options, const Common& common) {
-  const Workers workers = workers_of(options, common);
+  const Workers workers = workers_of(options.device, common);
   const sweep::Plan plan = plan_of(options, common);
   const sweep::Shard shard = shard_of(options.shard);
   Profile profile(options.profile);
@@ -337,13 +320,7 @@ void add_sweep(CLI::App& program, Common& common) {
                  "Compute only shard i of n, as i/n: every n-th point of a grid, or every n-th search; "
                  "default: 1/1, all");
   run.add_flag("--mpi", options->mpi, "Compute on the ranks of this MPI job, one point on each rank");
-  run.add_option(
-         "--device", options->device,
-         "Run the beds on a device, with the same results: gpu, a graphics card with many beds at once "
-         "(--threads, default 256), which was never tried on a card (docs/sweeps.md); host, the same kernel "
-         "on the processor, to test it")
-      ->check(CLI::IsMember({"gpu", "host"}))
-      ->excludes("--mpi");
+  add_device_option(run, options->device)->excludes("--mpi");
   run.add_flag("--keep-trajectories", options->keep_trajectories,
                "Store trajectory.h5 of every point that this command computes");
   add_profile_option(run, options->profile);

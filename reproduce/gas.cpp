@@ -211,7 +211,7 @@ bool Gas::run() {
   if (!request_.stored.empty()) return true;
   std::vector<sweep::Schedule*> schedules;
   for (Runs& runs : runs_) schedules.push_back(&*runs.schedule);
-  const bool complete = run_here(schedules, store_, {request_.threads, false}, *request_.watch);
+  const bool complete = run_here(schedules, store_, request_.farm(), *request_.watch);
   for (Runs& runs : runs_) read(runs);
   return complete;
 }

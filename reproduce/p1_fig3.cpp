@@ -496,7 +496,7 @@ Runs simulated(const Request& request, const Size& size) {
     if (first && crystals) schedules.push_back(&*crystals->schedule);
     for (Boundary& b : runs.boundaries)
       if ((b.layers == kLayersOfA1) == first) schedules.push_back(&*b.schedule);
-    runs.complete = run_here(schedules, store, {request.threads, false}, *request.watch) && runs.complete;
+    runs.complete = run_here(schedules, store, request.farm(), *request.watch) && runs.complete;
   }
   for (Boundary& b : runs.boundaries) b.read();
   if (crystals) runs.crystals = crystals->count();
@@ -580,6 +580,7 @@ Reproducible p1_fig3() {
           .run = run,
           .takes_data = true,
           .judges_stored = true,
+          .on_device = true,
           .worth = 8};
 }
 

@@ -229,6 +229,7 @@ Reproducible p1_fig4() {
           .run = run,
           .shared_runs = kStrengthSweepRuns,
           .judges_stored = true,
+          .on_device = true,
           .worth = 4};
 }
 

@@ -279,6 +279,7 @@ Reproducible p1_fig5() {
           .run = run,
           .shared_runs = kStrengthSweepRuns,
           .judges_stored = true,
+          .on_device = true,
           .runs_like = "p1-fig4"};
 }
 

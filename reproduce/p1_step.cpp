@@ -315,7 +315,7 @@ Values simulated_values(const Request& request, const Size& size, bool& complete
   for (const sweep::Plan& plan : plans) schedules.emplace_back(plan, store);
   std::vector<sweep::Schedule*> open;
   for (sweep::Schedule& s : schedules) open.push_back(&s);
-  complete = run_here(open, store, {request.threads, false}, *request.watch);
+  complete = run_here(open, store, request.farm(), *request.watch);
   Values values;
   for (std::size_t k = 0; k < schedules.size(); ++k) collect(kIntegrators[k], schedules[k], values);
   return values;
@@ -356,6 +356,7 @@ Reproducible p1_step() {
           .what = "effect of the time step on T_g, p_s, s_b and s_c",
           .run = run,
           .judges_stored = true,
+          .on_device = true,
           .worth = 2};
 }
 

@@ -265,7 +265,7 @@ StrengthSweeps strength_sweeps(const Request& request, const std::string& keys, 
                       of_crystal = plan_of(size, crystal, request.seed);
     sweep::Schedule r(of_random, store), c(of_crystal, store);
     // Once the time has run out, only results of earlier calls are read.
-    if (all.complete) all.complete = run_here({&r, &c}, store, {request.threads, false}, *request.watch);
+    if (all.complete) all.complete = run_here({&r, &c}, store, request.farm(), *request.watch);
     HeightSweeps height{.layers = layers,
                         .random = strength_sweep_of("random", r),
                         .crystal = strength_sweep_of("crystal_a", c)};

@@ -81,6 +81,7 @@ Reproducible p1_truncate() {
           .run = run,
           .shared_runs = kStrengthSweepRuns,
           .judges_stored = true,
+          .on_device = true,
           .worth = 3};
 }
 

@@ -38,7 +38,10 @@ struct Request {
   std::filesystem::path data = {};                       ///< the user's own points, CSV; empty: none
   std::string stored = {};  ///< Reproduction::measured of an earlier call: nothing runs, only the verdicts
                             ///< and figures are made anew; empty: none
-  sweep::Watch* watch = nullptr;  ///< must not be null when a reproduction runs
+  sweep::Watch* watch = nullptr;                   ///< must not be null when a reproduction runs
+  sim::SolverKind solver = sim::SolverKind::best;  ///< of figures with Reproducible::on_device
+
+  [[nodiscard]] sweep::FarmOptions farm() const { return {.threads = threads, .solver = solver}; }
 };
 
 /// Complete result of a reproduction.
@@ -62,6 +65,7 @@ struct Reproducible {
   std::string shared_runs = {};  ///< folder of runs that other figures also use, next to the figure's
   bool takes_data = false;       ///< whether it uses Request::window or Request::data
   bool judges_stored = false;    ///< whether it can use Request::stored
+  bool on_device = false;        ///< whether its beds can run on a device: a sweep of time steps
   double worth = 1;              ///< share of the time of `reproduce --all`, relative to the others
   std::string runs_like = {};    ///< entry whose runs this one needs: `--all` gives it the same budget for
                                  ///< them, and no time of its own

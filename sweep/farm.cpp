@@ -73,11 +73,21 @@ class Farm {
         sum.failed += c.failed;
         sum.work_left += c.work_left;
       }
+      if (watch_.time_left() < -overrun()) {
+        late_ = true;  // before closing_, which ends the points
+        closing_ = true;
+      }
       const double left = sum.work_left / (rate() * options_.threads);
       lock.unlock();
       watch_.look(sum, left);
       lock.lock();
     }
+  }
+
+  /// By how many seconds the running points may exceed the time limit. A point that was expected to fit may
+  /// be a little slower than the others; the first points were started without knowing their time.
+  [[nodiscard]] double overrun() const {
+    return std::max(5.0, 0.05 * std::chrono::duration<double>(Clock::now() - begin_).count());
   }
 
   /// Particle-steps per second of one worker, analysis included; NaN until a point is done.
@@ -137,8 +147,15 @@ class Farm {
     if (times != nullptr) StageTimes::add(own.rows(), *options_.times);
     --working_;
     changed_.notify_all();
+  } catch (const Interrupted&) {
+    // A point that was ended because it is late stays open: the same command computes it.
+    if (!late_) fail(std::current_exception());
+    leave();
   } catch (...) {
     fail(std::current_exception());
+    leave();
+  }
+  void leave() {
     const std::lock_guard lock(mutex_);
     --working_;
     changed_.notify_all();
@@ -172,7 +189,8 @@ class Farm {
   Watch& watch_;
   std::mutex mutex_;  ///< guards the schedules and the members below
   std::condition_variable changed_;
-  std::atomic<bool> closing_ = false;
+  std::atomic<bool> closing_ = false, late_ = false;
+  const Clock::time_point begin_ = Clock::now();
   int started_ = 0, working_ = 0, busy_ = 0;
   double seconds_ = 0, work_ = 0;
   std::exception_ptr error_;

@@ -1,28 +1,47 @@
 #include "sim/device/batcher.hpp"
 
+#include <algorithm>
 #include <map>
-#include <utility>
 
 #include "sim/device/cuda_executor.hpp"
 
 namespace twincell::sim {
 
 void Batcher::advance(const DeviceKernel& kernel, const DeviceBed& bed) {
-  Request own{&kernel, &bed};
+  Request own{.kernel = &kernel, .bed = &bed};
   std::unique_lock lock(mutex_);
   waiting_.push_back(&own);
-  changed_.wait(lock, [&] { return own.done || !launching_; });
-  if (!own.done) {  // this thread launches for all that wait
-    launching_ = true;
-    const std::vector<Request*> requests = std::exchange(waiting_, {});
+  if (launches_ < executor_->launches_at_once()) {
+    ++launches_;
+    own.batch = take();
+  } else {
+    own.changed.wait(lock, [&] { return own.done || !own.batch.empty(); });
+  }
+  if (!own.batch.empty()) {
     lock.unlock();
-    launch(requests);
+    launch(own.batch);
     lock.lock();
-    for (Request* request : requests) request->done = true;
-    launching_ = false;
-    changed_.notify_all();
+    for (Request* request : own.batch) {
+      request->done = true;
+      if (request != &own) request->changed.notify_one();
+    }
+    if (waiting_.empty()) {
+      --launches_;
+    } else {  // one of those that wait launches them
+      Request* next = waiting_.front();
+      next->batch = take();
+      next->changed.notify_one();
+    }
   }
   if (own.error) std::rethrow_exception(own.error);
+}
+
+/// The first of those that wait, as many as a launch may have.
+std::vector<Batcher::Request*> Batcher::take() {
+  const auto count = static_cast<std::ptrdiff_t>(std::min(waiting_.size(), executor_->beds_per_launch()));
+  std::vector<Request*> batch(waiting_.begin(), waiting_.begin() + count);
+  waiting_.erase(waiting_.begin(), waiting_.begin() + count);
+  return batch;
 }
 
 std::size_t Batcher::waiting() {

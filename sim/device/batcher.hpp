@@ -13,8 +13,9 @@
 
 namespace twincell::sim {
 
-/// While a launch is in progress, the beds that arrive wait; the next launch takes all of them. No bed waits
-/// for another that has not arrived, so threads that do something else delay nobody.
+/// While as many launches are in progress as the executor allows, the beds that arrive wait; the next launch
+/// takes those that wait, as many as it may have. No bed waits for another that has not arrived, so threads
+/// that do something else delay nobody.
 class Batcher {
  public:
   explicit Batcher(std::unique_ptr<Executor> executor) : executor_(std::move(executor)) {}
@@ -31,15 +32,17 @@ class Batcher {
     const DeviceKernel* kernel;
     const DeviceBed* bed;
     bool done = false;
+    std::vector<Request*> batch = {};  ///< which its thread launches; itself among them
     std::exception_ptr error = {};
+    std::condition_variable changed = {};  ///< of its own: a launch wakes no thread that has to wait on
   };
+  std::vector<Request*> take();
   void launch(const std::vector<Request*>& requests);
 
   std::unique_ptr<Executor> executor_;
   std::mutex mutex_;  ///< guards the members below
-  std::condition_variable changed_;
   std::vector<Request*> waiting_;
-  bool launching_ = false;
+  int launches_ = 0;  ///< in progress
 };
 
 /// The batchers of this process.

@@ -2,38 +2,50 @@
 /// \file
 /// One bed as the device kernel sees it: plain numbers and pointers into memory of the device.
 
+#include <cstddef>
 #include <cstdint>
 
 namespace twincell::sim {
 
+/// Largest number of threads of a block. It bounds the registers of a thread.
+inline constexpr int kMostThreads = 512;
+
+/// Largest number of stops of a launch.
+inline constexpr int kMostStops = 20;
+
 /// What a launch leaves to the next one and to the host.
 struct BedReport {
-  std::int64_t steps;     ///< done in this launch
-  std::int64_t failed;    ///< step of this launch at which an overlap exceeded its bound; -1: none
-  std::int64_t overfull;  ///< step at which a bead had more neighbours than slots; -1: none
-  std::int64_t outside;  ///< last step at which a bead left the bound around the last known mean displacement
-  std::int64_t far;      ///< last step at which a bead left the bound around the mean displacement
-  std::int64_t builds;   ///< of the neighbour list, over all launches
-  std::int64_t list;     ///< which of the two lists is in use
-  double carried[3];     ///< mean displacement of the beads since the build, when it was last computed
+  std::int64_t steps;   ///< done in this launch
+  std::int64_t failed;  ///< 1: at the last one an overlap exceeded its bound, or a bead had too few slots
+  std::int64_t builds;  ///< of the neighbour list, over all launches
+  std::int64_t list;    ///< which of the two lists is in use
+  std::int64_t pairs;   ///< in that list
+  double carried[3];    ///< common displacement of the beads since the build, when it was last computed
 };
 
-/// Bead records have the layout of kernels.hpp. Contact memory is [slot][number]: each bead has slots for its
-/// neighbours, sorted by their number, and both beads of a pair remember the same numbers. There are two
-/// lists, because a build carries the memory from the old one to the new one.
+/// Bead records have the layout of kernels.hpp. Each bead has slots for its neighbours, sorted by their
+/// number. Two beads that are neighbours are a pair, and name it in their slots. There are two lists, because
+/// a build carries the contact memory from the old one to the new one. Where each thread reads its own
+/// element, the elements are next to each other, so that a card fetches them together.
 struct DeviceBed {
   std::int32_t beads, walls, kinds;
+  std::int32_t slots;                ///< of a bead
+  std::int32_t most_pairs;           ///< places for pairs
   double *records, *spins, *forces;  ///< as in kernels.hpp
   BedReport* report;
 
   std::int32_t* neighbours[2];  ///< [bead] number of slots in use
-  std::int32_t* partner[2];     ///< [slot]
-  double* memory[2];            ///< [slot][number]
-  double* wall_memory;          ///< [bead][wall][number]
+  std::int32_t* partner[2];     ///< [slot][bead]
+  std::int32_t* pair[2];        ///< [slot][bead]
+  double* memory[2];            ///< [number][pair]
+  std::int32_t* pair_beads;     ///< [pair][2] the lower number first
+  double* pair_forces;          ///< [pair][number], see storing_lanes.hpp
+  std::int32_t* first_pair;     ///< [bead] of its pairs with beads of higher numbers
+  std::int32_t* part_pairs;     ///< [kParts] numbers of pairs of parts of the beads
+  double* wall_memory;          ///< [wall][number][bead]
   double* listed_at;            ///< [bead][axis] positions at the last build
 
   // The kernel only reads the following.
-  std::int32_t* first;     ///< [beads + 1] first slot of a bead
   std::int32_t* kind;      ///< [bead] beads of one kind have the same size and mass
   double* pair_constants;  ///< [kind][kind][constant], the kind of the bead with the lower number first
   double* wall_constants;  ///< [wall][kind][constant]
@@ -46,18 +58,43 @@ struct DeviceBed {
   /// numbers, in the order of a record), velocity of the cell for the drag (3), then the offset of each wall.
   double* plate;
 
+  // What a launch transfers: before it the inputs (normals to plate), after it the states (records to report)
+  // at its stops, between memory of the device and memory of the processor.
+  std::byte *inputs, *state;
+  std::byte* states;  ///< [stop] copies of the state that the kernel makes
+  std::byte *host_inputs, *host_states;
+  std::int64_t input_words, state_words;  ///< of 8 bytes; those of one state
+
   double period[3], gravity[3];  ///< in the order of a record
   double dt, quantum;
   double overlap_bound;  ///< sigma
   double skin;           ///< sigma; pairs with gaps below are listed
   bool periodic, spin, locate, has_drag;
 
-  std::int64_t step;           ///< present step of the system
-  std::int64_t steps;          ///< to be done
+  std::int64_t step;  ///< present step of the system
+  std::int64_t
+      stops[kMostStops];       ///< steps from the present one on at which the state is transferred, rising
+  std::int64_t last_stop;      ///< index of the last one, with which the launch ends
   std::int64_t rebuild_every;  ///< for tests: also build the list at every n-th step; 0: no
   bool known;                  ///< the forces are those at the present positions
   bool fresh;                  ///< positions may have changed since the last launch: the list is built first
 };
+
+/// Bytes of a word of what is transferred.
+inline constexpr std::int64_t kWord = 8;
+
+/// Parts of the beads for running sums.
+inline constexpr std::int32_t kParts = 32;
+
+/// Place of slot k of bead b.
+constexpr std::int32_t slot_place(std::int32_t beads, std::int32_t b, std::int32_t k) {
+  return beads * k + b;
+}
+/// Place of number m of the memory of bead b at wall w.
+constexpr std::int32_t wall_place(std::int32_t beads, std::int32_t memory, std::int32_t b, std::int32_t w,
+                                  std::int32_t m) {
+  return beads * (memory * w + m) + b;
+}
 
 /// Numbers in a row of DeviceBed::plate.
 constexpr std::int32_t plate_row(std::int32_t walls) {

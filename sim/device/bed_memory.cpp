@@ -1,6 +1,6 @@
 #include "sim/device/bed_memory.hpp"
 
-#include "sim/kernels/kernels.hpp"
+#include "sim/device/storing_lanes.hpp"
 
 namespace twincell::sim {
 
@@ -28,10 +28,14 @@ class Arrays {
 
 BedParts place_bed(DeviceBed& bed, const BedSizes& sizes, std::byte* base) {
   const std::size_t n = sizes.beads, axes = static_cast<std::size_t>(sizes.dimension);
+  const std::size_t slots = n * sizes.slots;
+  const std::size_t pairs = (slots + 1) / 2;  // each has two slots
   const bool flat = sizes.dimension == 2;
   bed.beads = static_cast<std::int32_t>(n);
   bed.walls = static_cast<std::int32_t>(sizes.walls);
   bed.kinds = static_cast<std::int32_t>(sizes.kinds);
+  bed.slots = static_cast<std::int32_t>(sizes.slots);
+  bed.most_pairs = static_cast<std::int32_t>(pairs);
   BedParts parts{};
   Arrays arrays(base);
   arrays.next(bed.records, n * (flat ? kRecord<2> : kRecord<3>));
@@ -41,13 +45,17 @@ BedParts place_bed(DeviceBed& bed, const BedSizes& sizes, std::byte* base) {
   parts.state = arrays.used();
   for (int list = 0; list < 2; ++list) {
     arrays.next(bed.neighbours[list], n);
-    arrays.next(bed.partner[list], sizes.slots);
-    arrays.next(bed.memory[list], sizes.slots * sizes.memory);
+    arrays.next(bed.partner[list], slots);
+    arrays.next(bed.pair[list], slots);
+    arrays.next(bed.memory[list], pairs * sizes.memory);
   }
+  arrays.next(bed.pair_beads, pairs * 2);
   arrays.next(bed.wall_memory, n * sizes.walls * sizes.memory);
-  arrays.next(bed.listed_at, n * axes);
   parts.contacts = arrays.used();
-  arrays.next(bed.first, n + 1);
+  arrays.next(bed.listed_at, n * axes);
+  arrays.next(bed.pair_forces, pairs * (flat ? kContactForce<2> : kContactForce<3>));
+  arrays.next(bed.first_pair, n);
+  arrays.next(bed.part_pairs, kParts);
   arrays.next(bed.kind, n);
   arrays.next(bed.pair_constants, sizes.kinds * sizes.kinds * sizes.constants);
   arrays.next(bed.wall_constants, sizes.walls * sizes.kinds * sizes.constants);
@@ -59,7 +67,14 @@ BedParts place_bed(DeviceBed& bed, const BedSizes& sizes, std::byte* base) {
   arrays.next(bed.drag, n);
   parts.surroundings = arrays.used();
   arrays.next(bed.plate, static_cast<std::size_t>((kStepsPerLaunch + 1) * plate_row(bed.walls)));
-  parts.all = arrays.used();
+  parts.work = arrays.used();
+  bed.state_words = static_cast<std::int64_t>(parts.state) / kWord;
+  if (base != nullptr) {
+    bed.state = base;
+    bed.inputs = base + parts.constants;
+    bed.states = base + parts.work;
+  }
+  parts.all = parts.work + kMostStops * parts.state;
   return parts;
 }
 

@@ -9,11 +9,12 @@
 namespace twincell::sim {
 
 /// Largest number of steps of a launch; longer calls are several launches.
-inline constexpr std::int64_t kStepsPerLaunch = 512;
+inline constexpr std::int64_t kStepsPerLaunch = 1024;
 
 struct BedSizes {
   int dimension = 2;
-  std::size_t beads = 0, walls = 0, kinds = 0, slots = 0;
+  std::size_t beads = 0, walls = 0, kinds = 0;
+  std::size_t slots = 0;                  ///< of a bead
   std::size_t constants = 0, memory = 0;  ///< numbers per kind of contact, and remembered by a contact
 };
 
@@ -24,7 +25,8 @@ struct BedParts {
   std::size_t constants;
   std::size_t
       surroundings;  ///< walls, drag: written, with the rows of the plate's motion, before each launch
-  std::size_t all;
+  std::size_t work;  ///< what is also kept as an image on the processor
+  std::size_t all;   ///< with the states at the stops of a launch
 };
 
 /// Sets the pointers of a bed whose memory begins at `base`, which is not accessed; null: only the ends of

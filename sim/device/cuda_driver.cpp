@@ -35,16 +35,22 @@ CudaDriver CudaDriver::load() {
   find(library, "cuDeviceGetCount", d.device_count);
   find(library, "cuDeviceGet", d.device_get);
   find(library, "cuDeviceGetName", d.device_name);
+  find(library, "cuDevicePrimaryCtxSetFlags_v2", d.set_flags);
   find(library, "cuDevicePrimaryCtxRetain", d.retain_context);
   find(library, "cuCtxSetCurrent", d.set_context);
   find(library, "cuModuleLoadData", d.load_module);
   find(library, "cuModuleGetFunction", d.get_function);
   find(library, "cuMemAlloc_v2", d.allocate);
   find(library, "cuMemFree_v2", d.release);
+  find(library, "cuMemHostAlloc", d.allocate_host);
+  find(library, "cuMemFreeHost", d.release_host);
   find(library, "cuMemcpyHtoD_v2", d.copy_to_device);
   find(library, "cuMemcpyDtoH_v2", d.copy_to_host);
+  find(library, "cuMemcpyHtoDAsync_v2", d.send);
+  find(library, "cuMemcpyDtoHAsync_v2", d.fetch);
   find(library, "cuLaunchKernel", d.launch);
-  find(library, "cuCtxSynchronize", d.synchronize);
+  find(library, "cuStreamCreate", d.create_stream);
+  find(library, "cuStreamSynchronize", d.synchronize);
   find(library, "cuGetErrorString", d.error_text);
   return d;
 }

@@ -43,18 +43,36 @@ struct BlockSpace {
     __syncthreads();
   }
   template <class F>
+  __device__ bool any(std::int32_t count, F f) const {
+    const auto threads = static_cast<std::int32_t>(__nvvm_read_ptx_sreg_ntid_x());
+    bool found = false;
+    for (auto i = static_cast<std::int32_t>(__nvvm_read_ptx_sreg_tid_x()); i < count; i += threads)
+      if (f(i)) found = true;
+    return __nvvm_bar0_or(found) != 0;
+  }
+  template <class F>
   __device__ void once(F f) const {
     if (__nvvm_read_ptx_sreg_tid_x() == 0) f();
     __syncthreads();
   }
 };
 
+/// The bed of this block, in memory of the block.
+__device__ inline const DeviceBed& own_bed(const DeviceBed* beds) {
+  __attribute__((shared)) static std::uint64_t words[sizeof(DeviceBed) / 8];
+  static_assert(sizeof(DeviceBed) % 8 == 0);
+  const auto* from = reinterpret_cast<const std::uint64_t*>(beds + __nvvm_read_ptx_sreg_ctaid_x());
+  BlockSpace{}.for_each(sizeof(DeviceBed) / 8, [&](std::int32_t k) { words[k] = from[k]; });
+  return *reinterpret_cast<const DeviceBed*>(words);
+}
+
 #define TWINCELL_JOIN(a, b) a##b
 #define TWINCELL_ENTRY(name, suffix) TWINCELL_JOIN(name, suffix)
 #define TWINCELL_KERNEL(suffix, dimension, velocity)                                                           \
-  extern "C" __attribute__((global)) void TWINCELL_ENTRY(TWINCELL_NAME, suffix)(const DeviceBed* beds) {       \
+  extern "C" __attribute__((global)) __attribute__((launch_bounds(kMostThreads))) void TWINCELL_ENTRY(         \
+      TWINCELL_NAME, suffix)(const DeviceBed* beds) {                                                          \
     advance_bed<BlockSpace, LawSet<TWINCELL_NORMAL, TWINCELL_TANGENTIAL, NoRolling>, dimension,                \
-                Velocity::velocity>(BlockSpace{}, beds[__nvvm_read_ptx_sreg_ctaid_x()]);                       \
+                Velocity::velocity>(BlockSpace{}, own_bed(beds));                                              \
   }
 TWINCELL_KERNEL(_2d_half, 2, half_step)
 TWINCELL_KERNEL(_2d_full, 2, full_step)

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <tuple>
@@ -61,35 +63,44 @@ class DeviceSolver : public Solver {
   DeviceSolver& operator=(const DeviceSolver&) = delete;
 
   void advance(System& s, std::int64_t steps) override {
-    if (s.beads.empty() || steps <= 0) {
-      s.step += std::max<std::int64_t>(0, steps);
+    if (steps > 0) advance_in_pieces(s, {steps}, [] {});
+  }
+  void advance_in_pieces(System& s, const std::vector<std::int64_t>& pieces,
+                         const std::function<void()>& after) override {
+    if (s.beads.empty()) {
+      for (const std::int64_t steps : pieces) s.step += steps, after();
       return;
     }
-    if (order_.size() != s.beads.size()) {
-      order_.resize(s.beads.size());
-      std::iota(order_.begin(), order_.end(), 0);
-    }
-    s.forces_known = s.forces_known && s.forces.size() == s.beads.size();
-    there_.known = s.forces_known;
-    if (memory_ == nullptr || here_.walls != static_cast<std::int32_t>(s.walls.size()) ||
-        !beads_.agrees(s, order_)) {
-      keep_memories();
-      beads_.load(s, order_, 0);
-      arrange(s);
-    }
-    set_surroundings(s);
-    for (std::int64_t left = steps; left > 0; left -= kStepsPerLaunch) {
-      const std::int64_t piece = std::min(left, kStepsPerLaunch), begin = s.step;
-      launch(s, piece);
-      s.step = begin + here_.report->steps;
-      if (here_.report->failed >= 0 || here_.report->overfull >= 0) {
+    prepare(s);
+    const std::vector<Stop> stops = stops_of(pieces, s.step);
+    for (Size next = 0; next < stops.size();) {
+      const std::int64_t begin = s.step;
+      Size count = 0;
+      for (; count < kMostStops && next + count < stops.size(); ++count) {
+        if (stops[next + count].step - begin > kStepsPerLaunch) break;
+        there_.stops[count] = stops[next + count].step - begin;
+      }
+      there_.last_stop = static_cast<std::int64_t>(count) - 1;
+      launch(s);
+      fetch(count - 1);
+      const bool failed = here_.report->failed != 0;
+      const std::int64_t done = here_.report->steps;
+      for (Size k = 0; k < count && !(failed && there_.stops[k] >= done); ++k, ++next) {
+        fetch(k);
+        s.step = begin + there_.stops[k];
+        beads_.store(s, order_);
+        if (!stops[next].ends_piece) continue;
+        check_motion(s, limits_);
+        after();
+      }
+      if (failed) {
+        fetch(count - 1);
+        s.step = begin + done;
         beads_.store(s, order_);
         explain_overlap(s, limits_);
       }
     }
-    counters_.steps += steps;
-    beads_.store(s, order_);
-    check_motion(s, limits_);
+    counters_.steps += std::accumulate(pieces.begin(), pieces.end(), std::int64_t{0});
   }
   [[nodiscard]] std::int64_t list_builds() const override {
     return memory_ == nullptr ? builds_ : here_.report->builds;
@@ -108,7 +119,8 @@ class DeviceSolver : public Solver {
 
   void release() {
     if (memory_ != nullptr) batcher_.executor().release(memory_);
-    memory_ = nullptr;
+    if (transfers_ != nullptr) batcher_.executor().release_host(transfers_);
+    memory_ = transfers_ = nullptr;
   }
 
   // --- contact memory ---
@@ -118,20 +130,28 @@ class DeviceSolver : public Solver {
     ContactMemories all = kept_;
     if (memory_ == nullptr || remembered_ == 0) return all;
     batcher_.executor().read(image() + parts_.state, memory_ + parts_.state, parts_.contacts - parts_.state);
-    const auto add = [&](std::int32_t i, std::int32_t j, const double* numbers) {
-      if (std::any_of(numbers, numbers + remembered_, [](double v) { return v != 0; }))
-        all[{i, j}].assign(numbers, numbers + remembered_);
+    std::vector<double> numbers(remembered_);
+    const auto add = [&](std::int32_t i, std::int32_t j) {
+      if (std::any_of(numbers.begin(), numbers.end(), [](double v) { return v != 0; })) all[{i, j}] = numbers;
     };
     const auto list = static_cast<Size>(here_.report->list);
-    for (std::int32_t b = 0; b < here_.beads; ++b) {
-      const std::int32_t begin = here_.first[b], end = begin + here_.neighbours[list][b];
-      for (std::int32_t slot = begin; slot < end; ++slot)
-        if (here_.partner[list][slot] > b)
-          add(b, here_.partner[list][slot], here_.memory[list] + remembered_ * static_cast<Size>(slot));
-      for (std::int32_t w = 0; w < here_.walls; ++w)
-        add(b, -1 - w, here_.wall_memory + remembered_ * static_cast<Size>(b * here_.walls + w));
+    for (std::int32_t pair = 0; pair < here_.report->pairs; ++pair) {
+      for (Size m = 0; m < remembered_; ++m) numbers[m] = here_.memory[list][memory_place(m, pair)];
+      add(here_.pair_beads[2 * pair], here_.pair_beads[2 * pair + 1]);
     }
+    for (std::int32_t b = 0; b < here_.beads; ++b)
+      for (std::int32_t w = 0; w < here_.walls; ++w) {
+        for (Size m = 0; m < remembered_; ++m) numbers[m] = here_.wall_memory[wall_memory_place(b, w, m)];
+        add(b, -1 - w);
+      }
     return all;
+  }
+  [[nodiscard]] Size memory_place(Size m, std::int32_t pair) const {
+    return static_cast<Size>(here_.most_pairs) * m + static_cast<Size>(pair);
+  }
+  [[nodiscard]] Size wall_memory_place(std::int32_t b, std::int32_t w, Size m) const {
+    return static_cast<Size>(
+        wall_place(here_.beads, static_cast<std::int32_t>(remembered_), b, w, static_cast<std::int32_t>(m)));
   }
   void keep_memories() {
     kept_ = memories();
@@ -154,26 +174,28 @@ class DeviceSolver : public Solver {
       kind[b] = known->second;
     }
     const double skin = kSkin * 2 * plan_.usual_radius;
-    std::vector<std::int32_t> first(n + 1, 0);
     double smallest = beads_.radius(0);
     for (Size b = 0; b < n; ++b) smallest = std::min(smallest, beads_.radius(b));
+    Size slots = 0;
     for (Size b = 0; b < n; ++b)
-      first[b + 1] = first[b] + static_cast<std::int32_t>(most_neighbours(
-                                    beads_.radius(b), smallest, skin, limits_.overlap, plan_.dimension, n));
+      slots = std::max(
+          slots, most_neighbours(beads_.radius(b), smallest, skin, limits_.overlap, plan_.dimension, n));
     BedSizes sizes{.dimension = plan_.dimension, .beads = n, .walls = s.walls.size(), .kinds = model.size()};
-    sizes.slots = static_cast<Size>(first[n]);
+    sizes.slots = slots;
     sizes.constants = pair_constants(model[0], model[0]).size();
     sizes.memory = remembered_;
     require_table(sizes);
     parts_ = place_bed(here_, sizes, nullptr);
-    image_.assign(parts_.all / sizeof(double), 0.0);
+    image_.assign(parts_.work / sizeof(double), 0.0);
     place_bed(here_, sizes, image());
     memory_ = batcher_.executor().allocate(parts_.all);
+    transfers_ =
+        batcher_.executor().allocate_host(kMostStops * parts_.state + parts_.work - parts_.constants);
     place_bed(there_, sizes, memory_);
+    there_.host_states = transfers_, there_.host_inputs = transfers_ + kMostStops * parts_.state;
     there_.skin = skin;
     there_.fresh = true;
 
-    std::copy(first.begin(), first.end(), here_.first);
     std::copy(kind.begin(), kind.end(), here_.kind);
     double* at = here_.pair_constants;
     for (const Size a : model)
@@ -190,7 +212,7 @@ class DeviceSolver : public Solver {
     transfer_beads(
         [](double* in_image, double* packed, Size count) { std::copy_n(packed, count, in_image); });
     here_.report->builds = builds_;
-    list_kept(first);
+    list_kept();
     batcher_.executor().write(memory_, image(), parts_.constants);
   }
   static double* append(double* at, const std::vector<double>& values) {
@@ -227,29 +249,31 @@ class DeviceSolver : public Solver {
     copy(here_.forces, beads_.forces(), n * (flat ? kForceRecord<2> : kForceRecord<3>));
   }
   /// Lists the contacts in `kept_`, from which the first build of the device takes their memory.
-  void list_kept(const std::vector<std::int32_t>& first) {
-    std::map<ContactMemories::key_type, const std::vector<double>*>
-        of_beads;  // by bead and partner, so each pair twice
+  void list_kept() {
+    std::map<ContactMemories::key_type, std::int32_t> of_beads;  // pairs by bead and partner, so each twice
+    std::vector<const std::vector<double>*> pairs;
     for (const auto& [key, memory] : kept_) {
       const auto [i, j] = key;
       if (j < 0) {
-        double* to = here_.wall_memory + remembered_ * static_cast<Size>(i * here_.walls + (-1 - j));
-        std::copy_n(memory.begin(), std::min(memory.size(), remembered_), to);
+        for (Size m = 0; m < std::min(memory.size(), remembered_); ++m)
+          here_.wall_memory[wall_memory_place(i, -1 - j, m)] = memory[m];
       } else {
-        of_beads[{i, j}] = of_beads[{j, i}] = &memory;
+        of_beads[{i, j}] = of_beads[{j, i}] = static_cast<std::int32_t>(pairs.size());
+        pairs.push_back(&memory);
       }
     }
-    for (const auto& [key, memory] : of_beads) {
+    for (const auto& [key, pair] : of_beads) {
       std::int32_t& used = here_.neighbours[0][key.first];
-      const std::int32_t slot = first[static_cast<Size>(key.first)] + used;
-      if (slot == first[static_cast<Size>(key.first) + 1])
+      if (used == here_.slots)
         throw RunError(
             fmt::format("bead {} has more contacts with memory than beads that fit around it.", key.first));
-      ++used;
+      const std::int32_t slot = slot_place(here_.beads, key.first, used++);
       here_.partner[0][slot] = key.second;
-      std::copy_n(memory->begin(), std::min(memory->size(), remembered_),
-                  here_.memory[0] + remembered_ * static_cast<Size>(slot));
+      here_.pair[0][slot] = pair;
     }
+    for (Size pair = 0; pair < pairs.size(); ++pair)  // two slots each, so they fit
+      for (Size m = 0; m < std::min(pairs[pair]->size(), remembered_); ++m)
+        here_.memory[0][memory_place(m, static_cast<std::int32_t>(pair))] = (*pairs[pair])[m];
     kept_.clear();
   }
 
@@ -277,17 +301,50 @@ class DeviceSolver : public Solver {
     there_.has_drag = s.plate_drag > 0;
   }
 
-  /// Does up to kStepsPerLaunch steps. Changes s.step.
-  void launch(System& s, std::int64_t steps) {
+  /// Where the state of the device is fetched.
+  struct Stop {
+    std::int64_t step;
+    bool ends_piece;  ///< or only a launch
+  };
+  /// The ends of the pieces, and of the launches into which long ones are divided.
+  static std::vector<Stop> stops_of(const std::vector<std::int64_t>& pieces, std::int64_t step) {
+    std::vector<Stop> stops;
+    for (const std::int64_t piece : pieces) {
+      const std::int64_t last = step + piece;
+      for (; last - step > kStepsPerLaunch; stops.push_back({step, false})) step += kStepsPerLaunch;
+      stops.push_back({step = last, true});
+    }
+    return stops;
+  }
+  /// Brings the bed to the device if it is not there as it is.
+  void prepare(System& s) {
+    if (order_.size() != s.beads.size()) {
+      order_.resize(s.beads.size());
+      std::iota(order_.begin(), order_.end(), 0);
+    }
+    s.forces_known = s.forces_known && s.forces.size() == s.beads.size();
+    there_.known = s.forces_known;
+    if (memory_ == nullptr || here_.walls != static_cast<std::int32_t>(s.walls.size()) ||
+        !beads_.agrees(s, order_)) {
+      keep_memories();
+      beads_.load(s, order_, 0);
+      arrange(s);
+    }
+    set_surroundings(s);
+  }
+  /// Advances the bed to its last stop. s.step is changed and restored.
+  void launch(System& s) {
     there_.step = s.step;
-    there_.steps = steps;
-    const Size bytes = set_plate_motion(s, steps);
-    Executor& device = batcher_.executor();
-    device.write(memory_ + parts_.constants, image() + parts_.constants, bytes);
+    const Size bytes = set_plate_motion(s, there_.stops[there_.last_stop]);
+    std::memcpy(there_.host_inputs, image() + parts_.constants, bytes);
+    there_.input_words = static_cast<std::int64_t>(bytes) / kWord;
     batcher_.advance(kernel_, there_);
     there_.fresh = false;
     there_.known = true;
-    device.read(image(), memory_, parts_.state);
+  }
+  /// Fetches the state at a stop.
+  void fetch(Size stop) {
+    std::memcpy(image(), there_.host_states + parts_.state * stop, parts_.state);
     transfer_beads(
         [](double* in_image, double* packed, Size count) { std::copy_n(in_image, count, packed); });
   }
@@ -319,7 +376,8 @@ class DeviceSolver : public Solver {
   Size remembered_;
   PackedBeads beads_;
   std::vector<std::int32_t> order_;
-  std::byte* memory_ = nullptr;  ///< of the device; null: the bed is not there
+  std::byte* memory_ = nullptr;     ///< of the device; null: the bed is not there
+  std::byte* transfers_ = nullptr;  ///< of the processor, for what every launch transfers
   BedParts parts_{};
   mutable std::vector<double> image_;  ///< copy of that memory
   DeviceBed here_{}, there_{};         ///< the bed in the image, and in memory of the device

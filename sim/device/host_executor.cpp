@@ -22,6 +22,14 @@ class HostSpace {
         f(i);
   }
   template <class F>
+  bool any(std::int32_t count, F f) const {
+    bool found = false;
+    for_each(count, [&](std::int32_t i) {
+      if (f(i)) found = true;
+    });
+    return found;
+  }
+  template <class F>
   void once(F f) const {
     f();
   }
@@ -49,24 +57,37 @@ constexpr std::align_val_t kAlignment{64};
 
 class HostExecutor : public Executor {
  public:
-  explicit HostExecutor(const HostThreads& threads) : space_(threads) {}
+  explicit HostExecutor(const HostThreads& threads) : threads_(threads) {}
 
   [[nodiscard]] std::byte* allocate(std::size_t bytes) override {
     return static_cast<std::byte*>(::operator new(bytes, kAlignment));
   }
   void release(std::byte* memory) override { ::operator delete(memory, kAlignment); }
+  [[nodiscard]] std::byte* allocate_host(std::size_t bytes) override { return allocate(bytes); }
+  void release_host(std::byte* memory) override { release(memory); }
+  [[nodiscard]] int launches_at_once() const override { return 1 << 20; }  // kernels share nothing
   void write(std::byte* to, const void* from, std::size_t bytes) override { std::memcpy(to, from, bytes); }
   void read(void* to, const std::byte* from, std::size_t bytes) override { std::memcpy(to, from, bytes); }
   void advance(const DeviceKernel& kernel, const std::vector<DeviceBed>& beds) override {
-    for (const DeviceBed& bed : beds) kFunctions[kernel.index](space_, bed);
+    for (const DeviceBed& bed : beds) {
+      transfer(inputs_of(bed));
+      run_on_host(kernel, bed, threads_);
+      transfer(states_of(bed));
+    }
   }
   [[nodiscard]] std::string description() const override { return "device kernel on the processor"; }
 
  private:
-  HostSpace space_;
+  static void transfer(const Transfer& t) { std::memcpy(t.to, t.from, t.bytes); }
+
+  HostThreads threads_;
 };
 
 }  // namespace
+
+void run_on_host(const DeviceKernel& kernel, const DeviceBed& bed, const HostThreads& threads) {
+  kFunctions[kernel.index](HostSpace(threads), bed);
+}
 
 std::unique_ptr<Executor> make_host_executor(const HostThreads& threads) {
   return std::make_unique<HostExecutor>(threads);

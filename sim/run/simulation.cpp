@@ -183,7 +183,9 @@ void Simulation::settle(Progress& progress, StageTimes* times) try {
   const bool falls = !system_.beads.empty() && scene_.g() > 0;
   const auto most = falls ? static_cast<std::int64_t>(scene_.settle_limit / system_.dt) : 0;
   while (system_.step / block * block < most && quiet_ < kLooks) {
-    advance(std::min(block - system_.step % block, steps_per_call(system_.beads.size())), times, "settling");
+    advance(
+        {std::min(block - system_.step % block, steps_per_call(system_.beads.size()))}, [] {}, times,
+        "settling");
     if (system_.step % block == 0) {
       settled_.energy_per_bead = kinetic_energy_per_bead(system_);
       quiet_ = settled_.energy_per_bead < scene_.rest_energy ? quiet_ + 1 : 0;
@@ -346,12 +348,14 @@ std::int64_t Simulation::sample_at(std::int64_t j, std::int64_t interval) const 
   return (j * interval + samples - 1) / samples;
 }
 
-void Simulation::advance(std::int64_t steps, StageTimes* times, std::string_view stage) {
-  if (times == nullptr) return kernel_->advance(system_, steps);
+void Simulation::advance(const std::vector<std::int64_t>& pieces, const std::function<void()>& after,
+                         StageTimes* times, std::string_view stage) {
+  if (times == nullptr) return kernel_->advance_in_pieces(system_, pieces, after);
   Stage stepping(times, stage, "particle-steps");
   const double before = kernel_->counters().bytes;
-  kernel_->advance(system_, steps);
-  stepping.count(static_cast<double>(system_.beads.size()) * static_cast<double>(steps),
+  const std::int64_t begin = system_.step;
+  kernel_->advance_in_pieces(system_, pieces, after);
+  stepping.count(static_cast<double>(system_.beads.size()) * static_cast<double>(system_.step - begin),
                  kernel_->counters().bytes - before);
 }
 
@@ -392,18 +396,29 @@ void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most
       looked_at_ += static_cast<std::int64_t>(system_.beads.size());
     }
     if (into == 0) temperature_ = {};
-    std::int64_t piece = std::min(interval - into, steps_per_call(system_.beads.size()));
+    const std::int64_t end = into + std::min(interval - into, steps_per_call(system_.beads.size()));
     // Samples are taken only in the interval before a frame that is written.
     const bool sampling = samples > 0 && (frame + 1) / scene_.phases >= plan_.cycles_before;
-    const std::int64_t next = sampling ? into * samples / interval + 1 : 0;
-    if (sampling) piece = std::min(piece, sample_at(next, interval) - into);
-    advance(piece, times, "stepping");
-    if (sampling && into + piece == sample_at(next, interval)) {
-      Stage sample(times, "samples", "samples");
-      take_sample(next, interval);
-      sample.count(1);
-    }
-    steps_done_ += piece;
+    std::int64_t next = sampling ? into * samples / interval + 1 : 0;
+    std::vector<std::int64_t> pieces;
+    if (sampling)
+      for (std::int64_t at = into, k = next; at < end; ++k) {
+        pieces.push_back(std::min(end, sample_at(k, interval)) - at);
+        at += pieces.back();
+      }
+    else
+      pieces.push_back(end - into);
+    const std::int64_t begin = system_.step - into;
+    advance(
+        pieces,
+        [&] {
+          if (!sampling || system_.step - begin != sample_at(next, interval)) return;
+          Stage sample(times, "samples", "samples");
+          take_sample(next++, interval);
+          sample.count(1);
+        },
+        times, "stepping");
+    steps_done_ += end - into;
     progress.update(system_.step, last);
   }
 }

@@ -114,7 +114,8 @@ class Simulation {
   [[nodiscard]] const Solver& kernel() const { return *kernel_; }
 
  private:
-  void advance(std::int64_t steps, StageTimes* times, std::string_view stage);
+  void advance(const std::vector<std::int64_t>& pieces, const std::function<void()>& after, StageTimes* times,
+               std::string_view stage);
   [[nodiscard]] Frame snapshot(std::int64_t cycle, int phase) const;
   /// The step of frame k, counted from phase 0 of the drive, and the last frame at or before a step. If the
   /// frequency changes, the step is the one nearest to the phase of the frame.

@@ -678,7 +678,12 @@ Scene resolve(Config config, const std::string& name, const std::vector<std::str
   const auto preset = root.word("preset", preset_names());
   std::vector<std::string> lower;
   if (!included.file.empty()) lower.push_back(included.file.string());
-  if (!preset) return interpret(config, name, folder, lower);
+  const auto scene_of = [&](Config& whole) {
+    Scene scene = interpret(whole, name, folder, lower);
+    scene.calibration = included.file;
+    return scene;
+  };
+  if (!preset) return scene_of(config);
   const auto& all = presets();
   const auto chosen = std::find_if(all.begin(), all.end(), [&](const auto& p) { return p.first == *preset; });
   lower.push_back("preset " + *preset);
@@ -691,7 +696,7 @@ Scene resolve(Config config, const std::string& name, const std::vector<std::str
       count_drive_words(config) >= 2)
     base.yield_to(config, "drive", drive_words());
   base.overlay(std::move(config));
-  return interpret(base, name, folder, lower);
+  return scene_of(base);
 }
 
 }  // namespace

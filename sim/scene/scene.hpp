@@ -150,7 +150,8 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
   // Effects that the user allows to omit. The plan refuses to omit an effect that would change the result.
   bool rotation = true, history = true;
 
-  std::vector<VoidKey> void_keys;  ///< keys of a preset or calibration file without effect
+  std::filesystem::path calibration;  ///< file that calibration.from names; empty: none
+  std::vector<VoidKey> void_keys;     ///< keys of a preset or calibration file without effect
 
   std::optional<ConfigSection> source;  ///< the text that was read; absent in a scene without text
 
@@ -163,6 +164,10 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
   [[nodiscard]] std::array<double, 3> period() const {
     return {sides == Edge::periodic ? width : 0, dimension == 3 && plates == Edge::periodic ? depth : 0,
             bottom == Edge::periodic ? height.value_or(0) : 0};
+  }
+  /// The files that the scene names; empty where it names none.
+  [[nodiscard]] std::vector<std::filesystem::path> named_files() const {
+    return {from, record.file, calibration};
   }
   /// The walls of the cell, in the order bottom, left, right, front, back, lid.
   [[nodiscard]] std::vector<Wall> walls() const;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,15 @@ class Solver {
   /// Advances the system by a number of steps.
   /// \throws RunError from guard.hpp, naming step, bead and likely cause
   virtual void advance(System& system, std::int64_t steps) = 0;
+  /// Advances by each of several numbers of steps, above 0, in turn, and calls `after` after each. It may read
+  /// the system but neither change it nor throw: a device computes all pieces before the first call.
+  virtual void advance_in_pieces(System& system, const std::vector<std::int64_t>& pieces,
+                                 const std::function<void()>& after) {
+    for (const std::int64_t steps : pieces) {
+      advance(system, steps);
+      after();
+    }
+  }
   /// Number of builds of the neighbour list.
   [[nodiscard]] virtual std::int64_t list_builds() const = 0;
   /// For tests: also rebuild the list at every n-th step.

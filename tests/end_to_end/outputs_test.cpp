@@ -298,6 +298,11 @@ TEST(Outputs, AFileThatAnInputNamesIsNeverAnOutput) {
   std::ofstream("recorded.toml") << "preset = \"fortini-huang-2015\"\n[beads]\ncount = 4\n[cell]\nwidth = "
                                     "4.0\n[drive]\nfile = \"record\"\nomega = 0.5\n[time]\ndiscard = 0\n"
                                     "cycles = 2\n";
+  std::ofstream("measured")
+      << "[drive.omega]\nvalue = 0.5\nstandard_error = 0.001\nunit = \"1/t0\"\nmethod = "
+         "\"m\"\ndata = \"d\"\n";
+  std::ofstream("calibrated.toml") << "preset = \"fortini-huang-2015\"\n[beads]\ncount = 4\n[cell]\nwidth = "
+                                      "4.0\n[drive]\ngamma = 1.2\n[calibration]\nfrom = \"measured\"\n";
   std::ofstream("named.json") << "preset = \"fortini-huang-2015\"\n[beads]\ncount = 4\n";
   std::ofstream("plan.toml") << "scene = \"named.json\"\n[axes]\ndrive.gamma = [1.2]\n";
   const auto before = Sandbox::contents();
@@ -307,6 +312,7 @@ TEST(Outputs, AFileThatAnInputNamesIsNeverAnOutput) {
            {"simulate", "scene.toml", "--set", "start.kind=\"trajectory\"", "--set", "start.from=\"sim.h5\"",
             "-o", "sim.h5"},
            {"simulate", "recorded.toml", "-o", "record", "--force"},
+           {"simulate", "calibrated.toml", "-o", "measured", "--force"},
            {"measure", "recorded.toml", "-o", "record", "--force"},
            {"measure", "from.toml", "-o", "sim.h5", "--force"},
            {"sweep", "collect", "plan.toml", "-o", "named.json", "--force"}}) {

@@ -5,6 +5,8 @@ fails; this holds every verb against that rule.
 A command block is an indented or fenced block whose first word is a program or a loop. The line before a block may hold
     <!-- not run: REASON -->       the block takes long or needs what a test machine lacks
     <!-- needs PROGRAM -->         the block runs where PROGRAM is installed
+    <!-- prints -->                the block is no command: its lines are among those that the commands before it print, in
+                                   this order; "..." stands for lines that are left out, numbers may differ by 2 %
 usage: pages_test.py TWINCELL SOURCE_FOLDER SCRATCH_FOLDER [PAGE...]     (PAGE: README.md, docs/NAME.md or --help)
 """
 import concurrent.futures
@@ -38,10 +40,10 @@ HELP_NOT_RUN = {
 
 
 def blocks_of_page(text):
-    """(commands, mark) of each command block; mark is the comment before it or ''."""
+    """(lines, mark) of each block of commands or of what they print; mark is the comment before it or ''."""
     found, lines, fenced, i = [], text.splitlines(), False, 0
     while i < len(lines):
-        mark = re.fullmatch(r"<!-- ((?:not run|needs).*) -->", lines[i - 2].strip() if i > 1 and not lines[i - 1].strip() else lines[i - 1].strip() if i else "")
+        mark = re.fullmatch(r"<!-- ((?:not run|needs|prints).*) -->", lines[i - 2].strip() if i > 1 and not lines[i - 1].strip() else lines[i - 1].strip() if i else "")
         block = []
         if lines[i].startswith("```"):
             i += 1
@@ -53,7 +55,9 @@ def blocks_of_page(text):
                 block.append(lines[i][4:])
                 i += 1
         i += 1
-        if block and re.match(PROGRAMS, block[0]):
+        if block and mark and mark.group(1) == "prints":
+            found.append((block, "prints"))
+        elif block and re.match(PROGRAMS, block[0]):
             found.append((joined(block), mark.group(1) if mark else ""))
     return found
 
@@ -95,7 +99,13 @@ def run_page(name):
     """(text to print, number of commands run, number not run, whether all went well)."""
     blocks = blocks_of_help() if name == "--help" else blocks_of_page(pathlib.Path(source, name).read_text())
     script, skipped, ran = ["set -e -o pipefail"], [], 0
+    printed, first = [], 0  # (lines, first and last command that print them)
     for commands, mark in blocks:
+        if mark == "prints":
+            assert ran > first, f"{name}: what is printed by no command: {commands[0]}"
+            printed.append((commands, first, ran))
+            continue
+        first = ran
         if mark.startswith("not run") or (mark.startswith("needs ") and not shutil.which(mark.split()[1])):
             skipped += [f"  not run: {c}   ({mark.removeprefix('not run: ')})" for c in commands]
             continue
@@ -115,15 +125,50 @@ def run_page(name):
         marks = [(float(t), c) for t, c in re.findall(r"^@ (\d+\.\d+) (.*)$", done.stdout, re.M)]
         text = [f"== {name}: {ran} commands run, {len(skipped)} not run"]
         text += [f"  {after[0] - before[0]:5.1f} s  {before[1]}" for before, after in zip(marks, marks[1:])] + skipped
+        outputs = re.split(r"^@ \d+\.\d+ .*\n", done.stdout, flags=re.M)[1:]
         good = done.returncode == 0
         if not good:
             text += [f"FAILED with exit code {done.returncode}: {marks[-1][1] if marks else ''}", done.stdout[-3000:]]
+        for lines, begin, end in printed if good else []:
+            missing = first_missing(lines, "".join(outputs[begin:end]).splitlines())
+            if missing is not None:
+                text.append(f"FAILED: the commands do not print, where the page says so: {missing}")
+                good = False
         for file, phrase in PROMISES.get(name, []) if good else []:
             holds = phrase in done.stdout if file is None else (home / "work" / file).stat().st_size > 1000
             if not holds:
                 text.append(f"FAILED: {file or 'the output'} lacks what the page promises: {phrase}")
                 good = False
     return "\n".join(text), ran, len(skipped), good
+
+
+NUMBER = r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
+
+
+def same_line(stated, printed):
+    """Whether the words are the same and the numbers differ by 2 % or two units of the last digit at most."""
+    if re.sub(NUMBER, "#", stated).split() != re.sub(NUMBER, "#", printed).split():
+        return False
+    for a, b in zip(re.findall(NUMBER, stated), re.findall(NUMBER, printed)):
+        mantissa, _, power = a.partition("e")
+        unit = 10.0 ** (int(power or 0) - len(mantissa.partition(".")[2]))
+        if abs(float(a) - float(b)) > max(0.02 * abs(float(a)), 2.001 * unit if "." in a else 0):
+            return False
+    return True
+
+
+def first_missing(lines, output):
+    """The first of the lines that the output lacks, or has elsewhere; None if there is none."""
+    at, anywhere = 0, True
+    for line in lines:
+        if line.strip() == "...":
+            anywhere = True
+            continue
+        found = next((k for k in range(at, len(output)) if same_line(line, output[k])), None)
+        if found is None or (not anywhere and found != at):
+            return line
+        at, anywhere = found + 1, False
+    return None
 
 
 def quiet(command):

@@ -5,9 +5,12 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sim/device/device_laws.hpp"
 #include "sim/device/executor.hpp"
@@ -25,11 +28,37 @@ bool has_fault(std::string_view fault) {
 }
 
 twincell::sim::Executor& card() {
-  static const auto executor = twincell::sim::make_host_executor({.count = 128, .backwards = true});
+  static const auto executor = twincell::sim::make_host_executor();
   return *executor;
 }
 
 thread_local bool has_context = false;
+
+/// A queue of the card. Its work is done when somebody waits for it, no sooner, as may happen on a card.
+class Queue {
+ public:
+  void add(std::function<void()> work) {
+    const std::lock_guard lock(mutex_);
+    work_.push_back(std::move(work));
+  }
+  void finish() {
+    const std::lock_guard lock(mutex_);
+    for (const auto& work : work_) work();
+    work_.clear();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::function<void()>> work_;
+};
+Queue& queue_of(void* stream) {
+  static Queue common;  // of calls without a stream
+  return stream == nullptr ? common : *static_cast<Queue*>(stream);
+}
+
+std::byte* on_card(unsigned long long address) {
+  return reinterpret_cast<std::byte*>(address);
+}
 
 /// The kernel of this name; null if there is none.
 std::unique_ptr<DeviceKernel> kernel_named(const std::string& name) {
@@ -61,6 +90,9 @@ int cuDeviceGet(int* device, int) {
 }
 int cuDeviceGetName(char* name, int length, int) {
   std::strncpy(name, "a card that is the processor", static_cast<std::size_t>(length));
+  return success;
+}
+int cuDevicePrimaryCtxSetFlags_v2(int, unsigned) {
   return success;
 }
 int cuDevicePrimaryCtxRetain(void** context, int) {
@@ -98,27 +130,67 @@ int cuMemFree_v2(unsigned long long memory) {
   card().release(reinterpret_cast<std::byte*>(memory));
   return success;
 }
+int cuMemHostAlloc(void** memory, std::size_t bytes, unsigned) {
+  if (!has_context) return no_context;
+  *memory = card().allocate_host(bytes);
+  return success;
+}
+int cuMemFreeHost(void* memory) {
+  if (!has_context) return no_context;
+  card().release_host(static_cast<std::byte*>(memory));
+  return success;
+}
+int cuStreamCreate(void** stream, unsigned flags) {
+  if (!has_context) return no_context;
+  if (flags != 1) return failed;  // others wait for copies
+  *stream = new Queue;            // lives as long as the program
+  return success;
+}
 int cuMemcpyHtoD_v2(unsigned long long to, const void* from, std::size_t bytes) {
   if (!has_context) return no_context;
-  card().write(reinterpret_cast<std::byte*>(to), from, bytes);
+  // As the driver does with ordinary memory: `from` is read now, the card's memory is written later.
+  const auto* begin = static_cast<const std::byte*>(from);
+  queue_of(nullptr).add([to, kept = std::vector<std::byte>(begin, begin + bytes)] {
+    std::memcpy(on_card(to), kept.data(), kept.size());
+  });
   return success;
 }
 int cuMemcpyDtoH_v2(void* to, unsigned long long from, std::size_t bytes) {
   if (!has_context) return no_context;
-  card().read(to, reinterpret_cast<const std::byte*>(from), bytes);
+  queue_of(nullptr).finish();
+  std::memcpy(to, on_card(from), bytes);
+  return success;
+}
+int cuMemcpyHtoDAsync_v2(unsigned long long to, const void* from, std::size_t bytes, void* stream) {
+  if (!has_context) return no_context;
+  if (stream == nullptr) return failed;  // it would wait for all others
+  queue_of(stream).add([=] { std::memcpy(on_card(to), from, bytes); });
+  return success;
+}
+int cuMemcpyDtoHAsync_v2(void* to, unsigned long long from, std::size_t bytes, void* stream) {
+  if (!has_context) return no_context;
+  if (stream == nullptr) return failed;
+  queue_of(stream).add([=] { std::memcpy(to, on_card(from), bytes); });
   return success;
 }
 int cuLaunchKernel(void* function, unsigned grid_x, unsigned grid_y, unsigned grid_z, unsigned block_x,
-                   unsigned block_y, unsigned block_z, unsigned, void*, void** arguments, void**) {
+                   unsigned block_y, unsigned block_z, unsigned, void* stream, void** arguments, void**) {
   if (!has_context) return no_context;
-  if (grid_y * grid_z * block_y * block_z != 1 || block_x != 128) return failed;
+  if (stream == nullptr) return failed;  // it would wait for all others
+  if (grid_y * grid_z * block_y * block_z != 1 || block_x > twincell::sim::kMostThreads) return failed;
   const auto* beds = reinterpret_cast<const DeviceBed*>(*static_cast<unsigned long long*>(arguments[0]));
-  card().advance(*static_cast<const DeviceKernel*>(function), {beds, beds + grid_x});
+  const auto* kernel = static_cast<const DeviceKernel*>(function);
+  queue_of(stream).add([=] {
+    for (unsigned k = 0; k < grid_x; ++k)
+      twincell::sim::run_on_host(*kernel, beds[k], {.count = static_cast<int>(block_x), .backwards = true});
+  });
   return success;
 }
-int cuCtxSynchronize() {  // reports faults of the launches before
+int cuStreamSynchronize(void* stream) {  // reports faults of the launches before
   if (!has_context) return no_context;
-  return has_fault("launch") ? failed : success;
+  if (stream != nullptr && has_fault("launch")) return failed;
+  queue_of(stream).finish();
+  return success;
 }
 int cuGetErrorString(int result, const char** text) {
   *text = result == out_of_memory ? "out of memory"

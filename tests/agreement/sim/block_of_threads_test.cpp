@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <barrier>
+#include <cstring>
 #include <thread>
 
 #include "sim/device/advance_bed.hpp"
@@ -20,11 +22,23 @@ constexpr std::int32_t kThreads = 3;  // no divisor of the number of beads
 struct ThreadSpace {
   std::int32_t thread;
   std::barrier<>* barrier;
+  std::atomic<bool>* found;
 
   template <class F>
   void for_each(std::int32_t count, F f) const {
     for (std::int32_t i = thread; i < count; i += kThreads) f(i);
     barrier->arrive_and_wait();
+  }
+  template <class F>
+  bool any(std::int32_t count, F f) const {
+    for (std::int32_t i = thread; i < count; i += kThreads)
+      if (f(i)) *found = true;
+    barrier->arrive_and_wait();
+    const bool answer = *found;
+    barrier->arrive_and_wait();
+    if (thread == 0) *found = false;
+    barrier->arrive_and_wait();
+    return answer;
   }
   template <class F>
   void once(F f) const {
@@ -39,23 +53,30 @@ class BlockExecutor : public Executor {
   using Laws = LawSet<LinearSpringDashpot, SpringSlider, NoRolling>;
   [[nodiscard]] std::byte* allocate(std::size_t bytes) override { return host_->allocate(bytes); }
   void release(std::byte* memory) override { host_->release(memory); }
+  [[nodiscard]] std::byte* allocate_host(std::size_t n) override { return host_->allocate_host(n); }
+  void release_host(std::byte* memory) override { host_->release_host(memory); }
   void write(std::byte* to, const void* from, std::size_t n) override { host_->write(to, from, n); }
   void read(void* to, const std::byte* from, std::size_t n) override { host_->read(to, from, n); }
   void advance(const DeviceKernel& kernel, const std::vector<DeviceBed>& beds) override {
     ASSERT_EQ(kernel.name, "linear_spring_2d_full");
     for (const DeviceBed& bed : beds) {
+      transfer(inputs_of(bed));
       std::barrier<> barrier(kThreads);
+      std::atomic<bool> found = false;
       std::vector<std::thread> block;
       for (std::int32_t t = 0; t < kThreads; ++t)
         block.emplace_back([&, t] {
-          advance_bed<ThreadSpace, Laws, 2, Velocity::full_step>(ThreadSpace{t, &barrier}, bed);
+          advance_bed<ThreadSpace, Laws, 2, Velocity::full_step>(ThreadSpace{t, &barrier, &found}, bed);
         });
       for (std::thread& thread : block) thread.join();
+      transfer(states_of(bed));
     }
   }
   [[nodiscard]] std::string description() const override { return "a block of threads"; }
 
  private:
+  static void transfer(const Transfer& t) { std::memcpy(t.to, t.from, t.bytes); }
+
   std::unique_ptr<Executor> host_ = make_host_executor();
 };
 

@@ -19,13 +19,19 @@ struct Habits {
   HostThreads threads;
   std::int64_t rebuild_every = 0;
   std::int64_t piece = 1 << 30;  ///< steps per call
+  bool one_call = false;         ///< with all pieces
 };
 Outcome on_device(const Plan& plan, System s, std::int64_t steps, const Habits& habits = {}) {
   Batcher batcher(make_host_executor(habits.threads));
   const auto solver = make_device_solver(plan, kLimits, batcher);
   solver->rebuild_every(habits.rebuild_every);
+  std::vector<std::int64_t> pieces;
   for (std::int64_t done = 0; done < steps; done += habits.piece)
-    solver->advance(s, std::min(habits.piece, steps - done));
+    pieces.push_back(std::min(habits.piece, steps - done));
+  if (habits.one_call)
+    solver->advance_in_pieces(s, pieces, [] {});
+  else
+    for (const std::int64_t piece : pieces) solver->advance(s, piece);
   return {std::move(s), solver->contacts()};
 }
 Outcome by_oracle(const Plan& plan, System s, std::int64_t steps) {
@@ -75,6 +81,7 @@ TEST_P(Device, HabitsDoNotShow) {
         EXPECT_TRUE(same({.rebuild_every = 7})) << name << ": a list for every 7th step";
         EXPECT_TRUE(same({.piece = 1})) << name << ": a launch for every step";
         EXPECT_TRUE(same({.piece = 37})) << name << ": launches of 37 steps";
+        EXPECT_TRUE(same({.piece = 7, .one_call = true})) << name << ": stops at every 7th step";
       });
 }
 
@@ -114,6 +121,42 @@ TEST(DeviceSolver, KeepsItsListsOverALongRun) {
   EXPECT_TRUE(same_bits(reference, {s, solver->contacts()}));
   EXPECT_GT(solver->list_builds(), 5);
   EXPECT_LT(solver->list_builds(), steps / 50);
+}
+
+// What is seen at each stop is what separate calls give, also when a bead is too fast between two of them.
+TEST(DeviceSolver, StopsShowTheSystemThere) {
+  const Scene scene = read_scene_text(
+      "[cell]\nwidth = 6.0\n[beads]\ncount = 40\n[drive]\nomega = 1.0\ngamma = 2.0\n[contact]\nk_n = "
+      "1e5\ngamma_n = 10.0\n[start]\nkind = \"random\"\n",
+      "shaken");
+  const Plan plan = make_plan(scene);
+  System start = make_system(scene, plan);
+  start.beads = make_start(scene).beads;
+  const std::vector<std::int64_t> pieces = {3,  1,  1500, 40, 40, 40, 2,  900, 40, 40, 40, 40, 40, 40,
+                                            40, 40, 40,   40, 40, 40, 40, 40,  40, 40, 40, 40, 40, 40};
+  for (const bool too_fast : {false, true}) {
+    if (too_fast) start.beads[3].vz = -600;
+    const auto seen = [&](Solver& solver) {
+      std::vector<System> at_stops;
+      std::string failure;
+      System s = start;
+      try {
+        solver.advance_in_pieces(s, pieces, [&] { at_stops.push_back(s); });
+      } catch (const RunError& e) {
+        failure = e.what();
+      }
+      return std::pair(at_stops, failure);
+    };
+    Batcher batcher(make_host_executor({.count = 128}));
+    const auto [expected, failure] = seen(*make_solver(plan, kLimits, SolverKind::all_pairs));
+    const auto [stops, device_failure] = seen(*make_device_solver(plan, kLimits, batcher));
+    EXPECT_EQ(device_failure, failure);
+    EXPECT_EQ(failure.empty(), !too_fast);
+    ASSERT_EQ(stops.size(), expected.size());
+    EXPECT_EQ(stops.size() < pieces.size(), too_fast);
+    for (std::size_t k = 0; k < stops.size(); ++k)
+      EXPECT_TRUE(same_bits({expected[k], {}}, {stops[k], {}})) << "stop " << k;
+  }
 }
 
 TEST(DeviceSolver, OneBeadAndNoWalls) {

@@ -1,0 +1,67 @@
+// The time limit of a sweep on this machine.
+
+#include "sweep/farm.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "sweep/plan.hpp"
+#include "sweep/store.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace twincell::sweep {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+class Limited : public Watch {
+ public:
+  explicit Limited(double seconds) : seconds_(seconds) {}
+  [[nodiscard]] double time_left() const override { return seconds_ - elapsed(); }
+  [[nodiscard]] double elapsed() const {
+    return std::chrono::duration<double>(Clock::now() - begin_).count();
+  }
+
+ private:
+  double seconds_;
+  Clock::time_point begin_ = Clock::now();
+};
+
+/// \param cycles of each of three points
+Plan plan_of(int cycles) {
+  return read_plan_text(
+      "seed = 1\nresults = [\"s_b\"]\n[scene]\npreset = \"fortini-huang-2015\"\nbeads.layers = 4\n"
+      "cell.width = 6.0\ntime = { discard = 0, cycles = " +
+          std::to_string(cycles) + ", steps_per_contact = 6.37 }\n[axes]\ndrive.gamma = [1.2, 1.6, 2.0]\n",
+      "plan");
+}
+
+// Without a point that is done the speed is unknown, and the first points are begun all the same.
+TEST(Farm, PointsThatAreLateAreEndedAndStayOpen) {
+  const TemporaryFolder folder;
+  const Store store(folder / "runs");
+  const Plan plan = plan_of(1'000'000);  // hours
+  Schedule schedule(plan, store);
+  Limited watch(0.2);
+  EXPECT_FALSE(run_here({&schedule}, store, {.threads = 2}, watch));
+  EXPECT_GT(watch.elapsed(), 5.0);
+  EXPECT_LT(watch.elapsed(), 15.0);
+  Schedule again(plan, store);
+  EXPECT_EQ(again.counts().done, 0U);
+  EXPECT_EQ(again.counts().known, 3U);
+  EXPECT_TRUE(again.take(1e300)) << "the right to compute the point was not given back";
+}
+
+TEST(Farm, PointsInTimeAreDone) {
+  const TemporaryFolder folder;
+  const Store store(folder / "runs");
+  const Plan plan = plan_of(2);
+  Schedule schedule(plan, store);
+  Limited watch(60);
+  EXPECT_TRUE(run_here({&schedule}, store, {.threads = 2}, watch));
+  EXPECT_EQ(schedule.counts().done, 3U);
+}
+
+}  // namespace
+}  // namespace twincell::sweep
