@@ -53,10 +53,11 @@ void of_stack(const CalibrateFlags& flags, const Common& common) {
   const calibration::CellGeometry g = geometry_of(flags, cell, common, edges);
   if (!g.has_left || !g.has_right)
     throw InputError({.file = flags.stack, .key = {}},
-                     fmt::format("shows no {} wall: each needs a dark border of 3 px with light next to it.",
+                     fmt::format("shows no {} wall: each needs a {} border of 3 px with {} next to it.",
                                  g.has_left    ? "right"
                                  : g.has_right ? "left"
-                                               : "side"));
+                                               : "side",
+                                 flags.bright ? "bright" : "dark", flags.bright ? "darkness" : "light"));
   const std::string data = data_hash(flags.stack);
   CalibrationResult out;
   const double width = g.width_px(), error = g.width_error_px();

@@ -131,7 +131,8 @@ nlohmann::json write_one(const Common& common, NewOptions& o, const fs::path& st
   require_output(cell, cell_file());
   require_output(picture, Product::picture());
   const twin::CellSurvey survey = twin::survey_cell(
-      stack, {.diameter_px = o.diameter_px, .threads = common.n_threads()}, progress_bars(common));
+      stack, {.diameter_px = o.diameter_px, .gamma = o.answers.gamma, .threads = common.n_threads()},
+      progress_bars(common));
   if (first && ::isatty(STDIN_FILENO) != 0 && ::isatty(STDERR_FILENO) != 0 && !common.quiet && !common.json)
     ask_for_the_rest(o.answers, survey, o.stacks.size() > 1);
   const twin::CellDraft draft = twin::draft_cell(survey, o.answers);

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <fstream>
 #include <mutex>
 #include <sstream>
@@ -24,6 +25,7 @@ struct Rules {
   std::mutex mutex;
   std::vector<fs::path> inputs;  ///< canonical
   bool force = false;
+  std::atomic<bool> has_force = false;  ///< there is an option --force
 };
 Rules& rules() {
   static Rules all;
@@ -112,10 +114,11 @@ void require_file(const fs::path& final, const Product& product, const Where& wh
     throw ConfigError(where, "the output is not a regular file (a device, pipe or socket).");
   if (!may_replace(final, product))
     throw ConfigError(where,
-                      fmt::format("the file exists and {}; choose another name, or replace it with --force.",
+                      fmt::format("the file exists and {}; choose another name{}.",
                                   product.sign == Product::Sign::none
                                       ? fmt::format("{} does not state which program made it", product.name)
-                                      : fmt::format("is not {} made by twincell", product.name)));
+                                      : fmt::format("is not {} made by twincell", product.name),
+                                  rules().has_force ? ", or replace it with --force" : ""));
 }
 
 void require_folder(const fs::path& final, const Product& product, const Where& where) {
@@ -168,6 +171,7 @@ void protect_input(const fs::path& path) {
 void replace_by_force(bool allowed) {
   const std::lock_guard lock(rules().mutex);
   rules().force = allowed;
+  rules().has_force = true;
 }
 
 bool may_replace(const fs::path& file, const Product& product) {

@@ -22,6 +22,8 @@ inline constexpr const char* kTemporaryPrefix = ".twincell-";
 void protect_input(const std::filesystem::path& path);
 
 /// Allows an output to replace an existing regular file of any kind (--force), unless it is an input.
+/// Messages advise --force once this has been called: a program without that option, such as the Python
+/// module, does not.
 void replace_by_force(bool allowed);
 
 /// Output name that stands for standard output, for products that are a single text file. `./-` is a file of

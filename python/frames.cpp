@@ -43,7 +43,9 @@ class IteratedFrames : public imaging::FrameSource {
     return true;
   }
   [[nodiscard]] std::size_t announced() const override { return announced_; }
-  [[nodiscard]] std::string current() const override { return fmt::format("picture {}", read_ - 1); }
+  [[nodiscard]] std::string current() const override {
+    return read_ == 0 ? "pictures" : fmt::format("picture {}", read_ - 1);
+  }
 
  private:
   py::object pictures_;
@@ -115,10 +117,19 @@ std::unique_ptr<imaging::FrameSource> source_of(const py::object& stack, std::st
   if (py::hasattr(stack, "_whole_stack"))
     if (const py::object whole = stack.attr("_whole_stack"); !whole.is_none()) return source_of(whole, name);
   py::object pictures = stack;
-  if (py::isinstance<py::array>(stack) && stack.cast<py::array>().ndim() == 2) {
-    py::list one;
-    one.append(stack);
-    pictures = one;
+  if (py::isinstance<py::array>(stack)) {
+    const auto array = stack.cast<py::array>();
+    // A picture of 3 or 4 columns has no bead.
+    if (array.ndim() == 3 && (array.shape(2) == 3 || array.shape(2) == 4))
+      throw ConfigError({.file = {}, .key = "stack"},
+                        fmt::format("has the shape ({}, {}, {}), as a picture in colours; give one of the "
+                                    "colours or their mean.",
+                                    array.shape(0), array.shape(1), array.shape(2)));
+    if (array.ndim() == 2) {
+      py::list one;
+      one.append(stack);
+      pictures = one;
+    }
   }
   const std::size_t announced = py::hasattr(pictures, "__len__") ? py::len(pictures) : 0;
   return std::make_unique<IteratedFrames>(pictures, announced);

@@ -120,6 +120,11 @@ class Run {
 std::shared_ptr<Trajectory> simulate(sim::Scene scene, const std::optional<std::filesystem::path>& output,
                                      int threads, const py::object& callback) {
   require_range({.file = {}, .key = "threads"}, threads, 0, 4096);
+  if (output) {
+    std::vector<std::filesystem::path> inputs = scene.named_files();
+    inputs.emplace_back(scene.file);
+    require_no_input(*output, inputs);
+  }
   std::vector<std::string> warnings;
   std::optional<SharedFrames> memory;
   unlocked(callback, [&](Progress& progress) {

@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "trajectory/box.hpp"
+#include "trajectory/ranges.hpp"
 
 namespace twincell::python {
 
@@ -20,6 +21,14 @@ std::shared_ptr<const Frame> Trajectory::frame(std::size_t index) {
     last_index_ = index;
   }
   return last_;
+}
+
+void require_no_input(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs) {
+  for (const std::filesystem::path& input : inputs) {
+    std::error_code none;  // a file that is not there is no input
+    if (std::filesystem::equivalent(output, input, none))
+      throw ConfigError({.file = output.string(), .key = {}}, "the output is an input of the same call.");
+  }
 }
 
 std::shared_ptr<Trajectory> trajectory_of(const py::handle& said) {
@@ -327,8 +336,12 @@ std::shared_ptr<Trajectory> from_arrays(const py::object& positions, const py::o
     info.box.lower = low - Vec3::Constant(0.5);
     info.box.upper = high + Vec3::Constant(0.5);
   }
+  const char* const name = "from_arrays";
+  require_ranges(info, name);
   SharedFrames memory(std::move(info));
-  for (Frame& frame : all) {
+  for (std::size_t t = 0; t < all.size(); ++t) {
+    Frame& frame = all[t];
+    require_ranges(frame, t, memory.info(), name);
     if (missing) {
       frame.id.resize(memory.info().n_beads, -1);
       for (std::size_t i = 0; i < memory.info().n_beads; ++i)
@@ -340,6 +353,7 @@ std::shared_ptr<Trajectory> from_arrays(const py::object& positions, const py::o
 }
 
 void write(Trajectory& trajectory, const std::filesystem::path& path) {
+  require_no_input(path, {trajectory.source().name()});
   H5mdWriter writer(path, trajectory.info());
   for (std::size_t t = 0; t < trajectory.n_frames(); ++t) writer.append(*trajectory.frame(t));
   writer.finish();

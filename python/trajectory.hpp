@@ -29,6 +29,10 @@ class SharedFrames : public TrajectorySource, public TrajectorySink {
   std::vector<std::shared_ptr<const Frame>> frames_;
 };
 
+/// Refuses an output that is one of the files that the call reads, under any name.
+/// \throws ConfigError naming the output
+void require_no_input(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs);
+
 /// A trajectory, and of a file the frame that was read last. An array of a column keeps its frame alive.
 class Trajectory {
  public:

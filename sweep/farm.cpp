@@ -73,7 +73,8 @@ class Farm {
         sum.failed += c.failed;
         sum.work_left += c.work_left;
       }
-      if (watch_.time_left() < -overrun()) {
+      // Once a point is done, so that every call makes progress, however short its time.
+      if (!std::isnan(rate()) && watch_.time_left() < -overrun()) {
         late_ = true;  // before closing_, which ends the points
         closing_ = true;
       }
@@ -84,8 +85,8 @@ class Farm {
     }
   }
 
-  /// By how many seconds the running points may exceed the time limit. A point that was expected to fit may
-  /// be a little slower than the others; the first points were started without knowing their time.
+  /// By how many seconds the running points may exceed the time limit: a point that was expected to fit may
+  /// be a little slower than the others.
   [[nodiscard]] double overrun() const {
     return std::max(5.0, 0.05 * std::chrono::duration<double>(Clock::now() - begin_).count());
   }

@@ -41,7 +41,8 @@ void require_memory_together(const Schedule& schedule, int together, const std::
                              double available = memory_available());
 
 /// Computes the points of the schedules until all are done or no remaining point fits into the time left.
-/// Points that exceed the time limit by more than 5 s and 5 % of the time are ended and stay open.
+/// Once a point is done, those that exceed the time limit by more than 5 s and 5 % of the time are ended and
+/// stay open.
 /// Without a time limit it waits for points that other processes compute. \returns whether all points are
 /// done \throws Interrupted, NotStored, InputError, ConfigError
 bool run_here(const std::vector<Schedule*>& schedules, const Store& store, const FarmOptions& options,

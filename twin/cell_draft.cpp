@@ -161,8 +161,8 @@ class Draft {
     const calibration::DriveFit& d = *s_.drive;
     if (d.frames_per_cycle == 0) return;
     stated("camera.frames_per_cycle", fmt::format("{}", d.frames_per_cycle),
-           fmt::format("period of the plate: {} +- {} frames", value_text({d.period, d.period_error}),
-                       error_text(d.period_error)));
+           fmt::format("period of the {}: {} +- {} frames", s_.plate_of_bed ? "bed" : "plate",
+                       value_text({d.period, d.period_error}), error_text(d.period_error)));
     stated("camera.first_phase", fmt::format("{}", d.first_phase),
            "of the first frame; phase 0: the plate passes its mean height upwards");
     significant("camera.phase_offset", {d.phase_offset, d.phase_offset_error},
@@ -175,14 +175,16 @@ class Draft {
     } else if (s_.has_walls() && scale_) {
       const calibration::Estimate w{s_.geometry->width_px(), s_.geometry->width_error_px()};
       measured("cell.width_sigma", with_errors(w.value / scale_->value, {relative(w), relative(*scale_)}),
-               fmt::format("walls {} px apart at the plate", value_text(w)));
+               fmt::format("walls {} px apart{}", value_text(w),
+                           s_.walls_of_bed ? ", from the beads that touch them" : " at the plate"));
     } else {
       open("cell.width_sigma", "distance of the side walls in bead diameters",
            s_.has_walls() ? fmt::format("the walls are {:.2f} px apart", s_.geometry->width_px())
                           : "or replace this key by width_mm");
     }
     if (s_.has_walls()) {
-      stated("cell.sides", "\"walls\"", "both walls are seen");
+      stated("cell.sides", "\"walls\"",
+             s_.walls_of_bed ? "beads pile up at both sides" : "both walls are seen");
       const auto& fit = s_.geometry->fit;
       const calibration::Estimate l{fit.value("tilt_left"), fit.standard_error("tilt_left")},
           r{fit.value("tilt_right"), fit.standard_error("tilt_right")};
@@ -211,7 +213,8 @@ class Draft {
       const calibration::Estimate px{s_.drive->amplitude, s_.drive->amplitude_error};
       amplitude = with_errors(px.value / scale_->value, {relative(px), relative(*scale_)});
       measured("drive.amplitude_sigma", *amplitude,
-               fmt::format("plate's edge, {} +- {} px", value_text(px), error_text(px.error)));
+               fmt::format("{}, {} +- {} px", s_.plate_of_bed ? "lower side of the bed" : "plate's edge",
+                           value_text(px), error_text(px.error)));
     }
     const auto f = frequency();
     const bool hertz = f && sigma_mm_;  // the frequency in reduced units needs the scale

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "calibration/drive/bed_in_view.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
 #include "imaging/settings/configure_locator.hpp"
@@ -43,7 +45,9 @@ class ReadableFrames : public imaging::FrameSource {
 };
 
 /// Bead size and polarity from the first frames; sizes in a dozen frames.
-void survey_beads(CellSurvey& s, const SurveyOptions& options, const ProgressOf& progress) {
+/// \returns the locator, if there are beads
+std::optional<imaging::LocatorOptions> survey_beads(CellSurvey& s, const SurveyOptions& options,
+                                                    const ProgressOf& progress) {
   constexpr int kFrames = 12;
   const char* remedy = "give the bead diameter in px with --diameter";
   imaging::LocatorOptions given;
@@ -66,7 +70,7 @@ void survey_beads(CellSurvey& s, const SurveyOptions& options, const ProgressOf&
       s.discs = imaging::locate(s.picture, found).beads;
     } catch (const InputError&) {
       s.missing.push_back({"the bead diameter", "no round beads stand out in the first frames", remedy});
-      return;
+      return std::nullopt;
     }
     bar->update(1, 1);
   }
@@ -75,7 +79,7 @@ void survey_beads(CellSurvey& s, const SurveyOptions& options, const ProgressOf&
   if (options.diameter_px <= 0 && s.discs.size() < kFewest) {
     s.discs.clear();
     s.missing.push_back({"the bead diameter", "no round beads stand out in the first frames", remedy});
-    return;
+    return std::nullopt;
   }
   s.bright = found.preprocess.bright;
   s.diameter_px = found.diameter_px;
@@ -89,7 +93,9 @@ void survey_beads(CellSurvey& s, const SurveyOptions& options, const ProgressOf&
         calibration::locate_beads(frames, found, std::nullopt, kFrames, options.threads, *bar));
   } catch (const InputError& e) {
     s.missing.push_back({"the bead diameter", fmt::format("too few beads are seen ({})", e.what()), remedy});
+    return std::nullopt;
   }
+  return found;
 }
 
 /// Whether a bead lies below the plate by more than a third of its diameter. The lowest edge is then no plate
@@ -103,17 +109,18 @@ bool beads_below_plate(const CellSurvey& s) {
 }
 
 /// The fitted motion, if the lowest edge moves as a plate does.
-void survey_plate(CellSurvey& s) {
+void survey_plate(CellSurvey& s, const SurveyOptions& options) {
   constexpr double kSeen = 0.9;
   const auto heights = s.geometry->heights_px();
   const auto seen = std::count_if(heights.begin(), heights.end(), [](double h) { return std::isfinite(h); });
   const auto unseen = [&](const std::string& why) {
     s.missing.push_back(
         {"the plate", why,
-         fmt::format(
-             "state camera.origin_px and the drive by hand, or film with the plate's upper edge and a "
-             "plate below it that is as {} as the beads in the picture",
-             s.bright ? "bright" : "dark")});
+         fmt::format("{}, or film with the plate's upper edge and a plate below it that is as {} as the "
+                     "beads in the picture",
+                     options.gamma ? "state camera.origin_px and the drive by hand"
+                                   : "state --drive-gamma, so that the motion of the bed shows it",
+                     s.bright ? "bright" : "dark")});
     s.geometry->has_plate = false;
   };
   if (!s.geometry->has_plate || seen == 0)
@@ -162,11 +169,14 @@ void survey_edges(CellSurvey& s, const SurveyOptions& options, const ProgressOf&
   try {
     s.geometry = calibration::fit_cell_geometry(edges);
   } catch (const InputError&) {
-    s.missing.push_back({"the walls and the plate", "no edge of the cell is seen in the picture",
-                         "state camera.origin_px, cell.width and the drive by hand"});
+    const char* why = "no edge of the cell is seen in the picture";
+    s.missing.push_back({"the side walls", why, "state cell.width and camera.origin_px by hand"});
+    s.missing.push_back({"the plate", why,
+                         options.gamma ? "state camera.origin_px and the drive by hand"
+                                       : "state --drive-gamma, so that the motion of the bed shows it"});
     return;
   }
-  survey_plate(s);
+  survey_plate(s, options);
   if (!s.has_walls())
     s.missing.push_back(
         {s.geometry->has_left    ? "the right wall"
@@ -179,13 +189,101 @@ void survey_edges(CellSurvey& s, const SurveyOptions& options, const ProgressOf&
          "state cell.width and camera.origin_px by hand, or cell.sides = \"periodic\""});
 }
 
+/// The first frames of a stack.
+class FirstFrames : public ReadableFrames {
+ public:
+  using ReadableFrames::ReadableFrames;
+  static constexpr int kMost = 2000;
+  bool next(cv::Mat& frame) override { return read() < kMost && ReadableFrames::next(frame); }
+  [[nodiscard]] std::size_t announced() const override {
+    return std::min<std::size_t>(kMost, ReadableFrames::announced());
+  }
+};
+
+/// Adds an upright wall to the parameters of a cell.
+void add_wall(calibration::FitReport& fit, const std::string& side, const calibration::Estimate& x) {
+  fit.names.insert(fit.names.end(), {"x_" + side, "tilt_" + side});
+  fit.values.insert(fit.values.end(), {x.value, 0});
+  fit.standard_errors.insert(fit.standard_errors.end(), {x.error, 0});
+  const auto n = static_cast<Eigen::Index>(fit.names.size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
+  const Eigen::Index before = fit.covariance.rows();
+  covariance.topLeftCorner(before, before) = fit.covariance;
+  covariance(n - 2, n - 2) = x.error * x.error;
+  fit.covariance = covariance;
+}
+
+/// Walls and plate that no edge shows, from the beads that touch them.
+void survey_bed(CellSurvey& s, const imaging::LocatorOptions& locator, const SurveyOptions& options,
+                const ProgressOf& progress) {
+  FirstFrames frames(s.stack);
+  const auto bar = progress("beads of all frames");
+  const calibration::BeadFrames beads =
+      calibration::locate_beads(frames, locator, std::nullopt, FirstFrames::kMost, options.threads, *bar);
+  // A bed that the picture cuts may have its walls outside. Single beads that fly out of it do not matter.
+  constexpr double kFew = 0.01;
+  double all = 0, cut = 0;
+  for (std::size_t f = 0; f < beads.frames.size(); ++f) {
+    all += static_cast<double>(beads.counts[f]);
+    cut += static_cast<double>(beads.counts[f] - beads.frames[f].size());
+  }
+  if (cut > kFew * all) {
+    s.notes.push_back(
+        "the border of the picture cuts beads, so walls and plate are not taken from the beads that touch "
+        "them");
+    return;
+  }
+  const auto found = [&](const std::string& what) {
+    std::erase_if(s.missing, [&](const NotMeasured& m) { return m.what.find(what) != std::string::npos; });
+  };
+  if (!s.has_walls()) {
+    if (!s.geometry) s.geometry.emplace().size = s.size;
+    calibration::CellGeometry& g = *s.geometry;
+    const double diameter = s.beads->diameter.value;
+    const auto left = g.has_left ? std::nullopt : calibration::wall_of_bed(beads, diameter, false),
+               right = g.has_right ? std::nullopt : calibration::wall_of_bed(beads, diameter, true);
+    if ((g.has_left || left) && (g.has_right || right)) {
+      if (left) add_wall(g.fit, "left", *left);
+      if (right) add_wall(g.fit, "right", *right);
+      g.has_left = g.has_right = s.walls_of_bed = true;
+      found("wall");
+    }
+  }
+  if (s.plate_row || s.drive || !options.gamma) return;
+  try {
+    const calibration::PlateOfBed plate =
+        calibration::plate_of_bed(beads, s.beads->diameter.value, *options.gamma);
+    const auto n = static_cast<double>(plate.phases.frames_per_cycle);
+    calibration::DriveFit& d = s.drive.emplace();
+    d.amplitude = plate.amplitude.value, d.amplitude_error = plate.amplitude.error;
+    d.frames_per_cycle = plate.phases.frames_per_cycle;
+    d.first_phase = plate.phases.first_phase;
+    d.period = n;
+    d.period_error = 0.5 * n / static_cast<double>(beads.frames.size());  // half a frame over the stack
+    d.omega = 2 * std::numbers::pi / n;
+    d.phi = d.omega * d.first_phase;
+    if (!s.geometry) s.geometry.emplace().size = s.size;
+    s.geometry->heights.clear();
+    for (std::size_t f = 0; f < plate.heights.size(); ++f) {
+      d.frames.push_back({.tick = static_cast<double>(f)});
+      s.geometry->heights.push_back({.height_px = plate.heights[f]});
+    }
+    s.plate_row = plate.row;
+    s.plate_of_bed = true;
+    found("plate");
+  } catch (const InputError& e) {
+    s.notes.push_back(fmt::format("the plate is not found from the bed either ({})", e.what()));
+  }
+}
+
 }  // namespace
 
 CellSurvey survey_cell(const std::filesystem::path& stack, const SurveyOptions& options,
                        const ProgressOf& progress) {
   CellSurvey s{.stack = stack};
-  survey_beads(s, options, progress);
+  const auto locator = survey_beads(s, options, progress);
   survey_edges(s, options, progress);
+  if (locator && (!s.has_walls() || !s.plate_row)) survey_bed(s, *locator, options, progress);
   s.notes.insert(s.notes.begin(), s.info.notes.begin(), s.info.notes.end());
   if (!s.unreadable.empty())
     s.notes.insert(s.notes.begin(),

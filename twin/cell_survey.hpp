@@ -27,7 +27,8 @@ struct NotMeasured {
 
 /// Options of survey_cell.
 struct SurveyOptions {
-  double diameter_px = 0;  ///< bead diameter; 0: found
+  double diameter_px = 0;       ///< bead diameter; 0: found
+  std::optional<double> gamma;  ///< of the drive, if known: where no plate is seen, it places the phases
   int threads = 1;
 };
 
@@ -45,8 +46,9 @@ struct CellSurvey {
   std::vector<double> other_diameters_px;  ///< of discs of further sizes
   std::optional<calibration::SizeStatistics> beads;
   std::optional<calibration::CellGeometry> geometry;
-  std::optional<calibration::DriveFit> drive;      ///< motion of the plate; times in frames
-  std::optional<calibration::Estimate> plate_row;  ///< mean height of the plate, row of the ideal picture
+  std::optional<calibration::DriveFit> drive;       ///< motion of the plate; times in frames
+  std::optional<calibration::Estimate> plate_row;   ///< mean height of the plate, row of the ideal picture
+  bool walls_of_bed = false, plate_of_bed = false;  ///< from the beads that touch them, not from their edges
   std::optional<double> frame_rate_hz;    ///< of the stamps or of the stack; not the playback rate of a video
   std::optional<double> playback_hz;      ///< frame rate that a video states
   std::size_t frame = 0;                  ///< number of the frame below
@@ -60,7 +62,8 @@ struct CellSurvey {
 
 /// Measures what the stack shows. Frames after an unreadable one, or after one of another size, are left out.
 /// The plate counts as seen only if at least 90 % of the frames show it and no bead is below it by a third of
-/// a diameter. \throws InputError if the stack cannot be opened or its first frame cannot be read
+/// a diameter. Where no plate or no side wall is seen, they are taken from the beads that touch them. \throws
+/// InputError if the stack cannot be opened or its first frame cannot be read
 CellSurvey survey_cell(const std::filesystem::path& stack, const SurveyOptions& options,
                        const ProgressOf& progress);
 

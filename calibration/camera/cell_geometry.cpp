@@ -506,6 +506,12 @@ class GeometryFit {
   FitReport report_;
 };
 
+double mean_x(const std::vector<WallRow>& wall) {
+  double sum = 0;
+  for (const WallRow& row : wall) sum += row.at.x_px / static_cast<double>(wall.size());
+  return sum;
+}
+
 void GeometryFit::choose_points() {
   constexpr std::size_t kFewestRows = 8;  // of a wall
   const std::size_t stride = std::max<std::size_t>(1, edges_.plate.size() / kPlateFrames);
@@ -518,12 +524,16 @@ void GeometryFit::choose_points() {
   put_floors(std::atan(slope_) / kDegree, 0);
   has_left_ = all_.left.size() >= kFewestRows;
   has_right_ = all_.right.size() >= kFewestRows;
+  // With the wrong polarity the edges of beads are found, from the other side: what is left of the left wall
+  // is no right wall.
+  if (has_left_ && has_right_ && mean_x(all_.right) <= mean_x(all_.left)) has_left_ = has_right_ = false;
   if (!has_left_) all_.left.clear();
   if (!has_right_) all_.right.clear();
   if (!has_plate_ && !has_left_ && !has_right_)
     throw InputError(
         {.file = {}, .key = "edges"},
-        "neither a plate nor a wall is seen: each needs a dark border of 3 px with light next to it.");
+        "neither a plate nor a wall is seen: each needs a dark border of 3 px with light next to it, or with "
+        "--bright a bright one with darkness next to it.");
 }
 
 // Sets the plate row of each wall row: its mean over the frames in which the row is seen, in the ideal
@@ -553,11 +563,6 @@ void GeometryFit::choose_parameters(bool with_distortion) {
   const auto add = [&](const char* name, double start) {
     p_.push_back(start);
     return places_.add(name);
-  };
-  const auto mean_x = [](const std::vector<WallRow>& wall) {
-    double sum = 0;
-    for (const WallRow& row : wall) sum += row.at.x_px / static_cast<double>(wall.size());
-    return sum;
   };
   if (has_plate_) places_.rotation = add("rotation", std::atan(slope_) / kDegree);
   if (has_left_) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <regex>
 
 #include "core/atomic_file.hpp"
 #include "imaging/camera/synthetic_camera.hpp"
@@ -333,6 +334,25 @@ TEST(Calibrate, InfersFromACurveAFlightTimeAndAnOnset) {
     const Ran ran = run_program(all);
     EXPECT_EQ(ran.code, 2) << said;
     EXPECT_NE(ran.err.find(said), std::string::npos) << ran.err;
+  }
+}
+
+// Dark beads and walls on light ground: with the wrong polarity the edges of beads are found, from the other
+// side.
+TEST(Calibrate, TheWrongPolarityGivesNoWalls) {
+  const TemporaryFolder folder;
+  film(folder, {.pixels_per_sigma = 12});
+  std::ofstream(folder / "cell.toml") << "[camera]\npixels_per_sigma = 12.0\n[cell]\nwidth = 12.0\n";
+  for (const std::string kind : {"walls", "camera"}) {
+    const Ran right = run_program({"calibrate", kind, folder / "frames", "--cell", folder / "cell.toml"});
+    EXPECT_EQ(right.code, 0) << right.err;
+    const Ran wrong =
+        run_program({"calibrate", kind, folder / "frames", "--cell", folder / "cell.toml", "--bright"});
+    EXPECT_FALSE(std::regex_search(wrong.out, std::regex("(pixels_per_sigma|width) +-"))) << wrong.out;
+    if (kind == "walls") {
+      EXPECT_EQ(wrong.code, 3) << wrong.out;
+      EXPECT_NE(wrong.err.find("bright"), std::string::npos) << wrong.err;
+    }
   }
 }
 

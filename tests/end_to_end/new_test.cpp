@@ -13,6 +13,7 @@
 #include "tests/support/file_bytes.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/put_file.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell {
 namespace {
@@ -213,6 +214,90 @@ TEST(New, WithoutThePlateInThePictureItsKeysAreLeftOpen) {
   EXPECT_TRUE(d["measured"].contains("cell.width_sigma")) << d.dump(1);
   EXPECT_TRUE(d["measured"].contains("camera.pixels_per_sigma"));
   EXPECT_FALSE(d["measured"].contains("camera.origin_px")) << d.dump(1);
+}
+
+/// A stack in which nothing but beads is seen: discs on even ground, with some noise.
+void draw_beads(const fs::path& trajectory, const fs::path& stack, double pixels_per_sigma, bool bright) {
+  constexpr int kMargin = 40, kHeight = 420;
+  const H5mdReader run(trajectory);
+  fs::create_directory(stack);
+  cv::RNG noise(7);
+  Frame frame;
+  for (std::size_t f = 0; f < run.n_frames(); ++f) {
+    run.read(f, frame);
+    const int width = static_cast<int>(pixels_per_sigma * run.info().box.upper.x()) + 2 * kMargin;
+    const double ground = bright ? 15 : 210, disc = bright ? 200 : 40;
+    cv::Mat picture(kHeight, width, CV_8U, cv::Scalar(ground)), grain(picture.size(), CV_16S);
+    for (std::size_t i = 0; i < frame.position.size(); ++i) {
+      const double x = kMargin + pixels_per_sigma * frame.position[i].x(),
+                   y = kHeight - 2 * kMargin - pixels_per_sigma * frame.position[i].z();
+      const double radius = pixels_per_sigma * run.info().radius[i];
+      for (int r = std::max(0, static_cast<int>(y - radius) - 1);
+           r < std::min(kHeight, static_cast<int>(y + radius) + 2); ++r)
+        for (int c = std::max(0, static_cast<int>(x - radius) - 1);
+             c < std::min(width, static_cast<int>(x + radius) + 2); ++c) {
+          const double inside = std::clamp(radius + 0.5 - std::hypot(c - x, r - y), 0.0, 1.0);
+          auto& pixel = picture.at<unsigned char>(r, c);
+          pixel = static_cast<unsigned char>(std::lround(pixel + inside * (disc - ground)) & 255);
+          if (inside == 1) pixel = static_cast<unsigned char>(disc);
+        }
+    }
+    cv::GaussianBlur(picture, picture, {}, 0.8);
+    noise.fill(grain, cv::RNG::NORMAL, 0, 2);
+    cv::add(picture, grain, picture, {}, CV_8U);
+    cv::imwrite((stack / frame_name(static_cast<int>(f))).string(), picture);
+  }
+}
+
+// Walls and plate are taken from the beads that touch them.
+TEST(New, ACellWithoutEdgesIsMeasuredByItsBeads) {
+  const TemporaryFolder folder;
+  constexpr double kScale = 16;
+  for (const double gamma : {0.8, 1.5, 1.8})
+    for (const std::string start : {"crystal_a", "random"}) {
+      const std::string name = start + fmt::format("-{:g}", gamma);
+      const fs::path scene = folder / (name + ".toml"), run = folder / (name + ".h5"), stack = folder / name,
+                     cell = folder / (name + "-cell.toml");
+      put_file(scene,
+               fmt::format("preset = \"fortini-huang-2015\"\n[cell]\nwidth = 12.3\n[beads]\nlayers = "
+                           "7\n[drive]\ngamma = {}\n[start]\nkind = \"{}\"\nperturbation = 1e-6\n[time]\n"
+                           "steps_per_contact = 6.37\ndiscard = 3\ncycles = 5\nphases = 20\n",
+                           gamma, start));
+      ASSERT_EQ(run_program({"simulate", scene, "-o", run, "-q"}).code, 0) << name;
+      draw_beads(run, stack, kScale, start == "random");
+      const nlohmann::json d =
+          run_json({"new", stack, "-o", cell, "--drive-gamma", fmt::format("{}", gamma)})["cells"][0];
+      ASSERT_TRUE(d["open"].empty()) << name << d.dump(1);
+      const imaging::CellDescription found = imaging::read_cell(cell);
+      const auto near = [&](double value, double truth, double bound, const char* key, std::size_t k = 0) {
+        EXPECT_NEAR(value, truth, bound) << name << ": " << key;
+        EXPECT_NEAR(value, truth, 4 * d["measured"][key][k]["standard_error"].get<double>())
+            << name << ": the stated error of " << key;
+      };
+      near(*found.width, 12.3, 0.03, "cell.width_sigma");
+      near(found.origin->x_px, 40, 0.02 * kScale, "camera.origin_px", 0);
+      near(found.origin->y_px, 420 - 80, 0.06 * kScale, "camera.origin_px", 1);
+      near(found.drive()->amplitude, gamma, 0.05 * gamma, "drive.amplitude_sigma");
+      EXPECT_EQ(found.phase_lock.frames_per_cycle, 20) << name;
+      EXPECT_EQ(found.phase_lock.first_phase, 0) << name;
+      EXPECT_EQ(found.sides, Boundary::wall) << name;
+    }
+}
+
+// A heap without walls, and a strength that is not stated.
+TEST(New, WhatTheBeadsDoNotShowIsLeftOpen) {
+  const TemporaryFolder folder;
+  put_file(
+      folder / "s.toml",
+      "preset = \"fortini-huang-2015\"\n[cell]\nwidth = 12.0\nsides = \"periodic\"\n[beads]\ncount = 60\n"
+      "[drive]\ngamma = 1.5\n[start]\nkind = \"random\"\n[time]\nsteps_per_contact = 6.37\ndiscard = 3\n"
+      "cycles = 4\nphases = 20\n");
+  ASSERT_EQ(run_program({"simulate", folder / "s.toml", "-o", folder / "s.h5", "-q"}).code, 0);
+  draw_beads(folder / "s.h5", folder / "stack", 16, false);
+  const nlohmann::json d = without(folder / "stack", folder / "CELL.toml", "the plate", "no edge");
+  EXPECT_FALSE(d["measured"].contains("cell.width_sigma")) << d.dump(1);
+  EXPECT_FALSE(d["measured"].contains("camera.origin_px")) << d.dump(1);
+  EXPECT_NE(d.dump().find("--drive-gamma"), std::string::npos);
 }
 
 TEST(New, AMissingStackIsAnError) {

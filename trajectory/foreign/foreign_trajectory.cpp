@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "core/median.hpp"
+#include "trajectory/ranges.hpp"
 
 namespace twincell {
 
@@ -120,12 +121,11 @@ struct ForeignTrajectory::Impl {
                                          *s.time, *time_before));
     time_before = s.time;
     for (const SnapshotBead& a : s.beads) {
-      constexpr double kFarthest = 1e7;  // sigma, as in H5MD files (docs/h5md.md)
-      if (!((a.position - o.origin).cwiseAbs().maxCoeff() <= kFarthest * o.sigma))
+      if (!((a.position - o.origin).cwiseAbs().maxCoeff() <= kFarthestPosition * o.sigma))
         reader.fail_at(a.line,
                        fmt::format("bead {} is at ({:g}, {:g}, {:g}), farther than {:g} bead diameters "
                                    "from the origin of the cell.",
-                                   a.id, a.position.x(), a.position.y(), a.position.z(), kFarthest));
+                                   a.id, a.position.x(), a.position.y(), a.position.z(), kFarthestPosition));
       constexpr double kFlat = 1e-9;
       if (!first_position) first_position = a.position;
       for (const int k : {1, 2})

@@ -15,6 +15,7 @@
 #include "trajectory/formats/h5md_file.hpp"
 #include "trajectory/formats/h5md_names.hpp"
 #include "trajectory/formats/recorded_group.hpp"
+#include "trajectory/ranges.hpp"
 
 namespace twincell {
 
@@ -43,7 +44,6 @@ struct H5mdReader::Impl {
   bool is_planar() const;
   void read_parameters();
   void read_conditions();
-  void require_ranges() const;
 };
 
 namespace {
@@ -104,57 +104,7 @@ void H5mdReader::Impl::open() {
   open_columns(group);
   read_box(group);
   read_parameters();
-  require_ranges();
-}
-
-/// Ranges that a bead cell can have. Values outside would later cause overflows, indices out of range or
-/// endless loops.
-void H5mdReader::Impl::require_ranges() const {
-  constexpr double kFarthest = 1e7, kLargestRadius = 1e5;  // sigma
-  constexpr int kMostPhases = 1'000'000;
-  if (info.box.dimension != 2 && info.box.dimension != 3)
-    refuse("twincell/cell@dimension", fmt::format("is {}; it must be 2 or 3.", info.box.dimension));
-  for (int a = 0; a < 3; ++a) {
-    const double low = info.box.lower[a], high = info.box.upper[a];
-    if (!(std::abs(low) <= kFarthest) || !(std::abs(high) <= kFarthest) || low > high)
-      refuse(
-          "cell",
-          fmt::format("its {} side goes from {:g} to {:g}; the bounds must ascend and be within {:g} of 0.",
-                      "xyz"[a], low, high, kFarthest));
-  }
-  const auto each = [&](const std::vector<double>& values, const char* name, double most) {
-    for (std::size_t i = 0; i < values.size(); ++i)
-      if (!(values[i] > 0 && values[i] <= most))
-        refuse(name, fmt::format("{:g} of bead {} is out of range; it must be above 0 and at most {:g}.",
-                                 values[i], i, most));
-  };
-  each(info.radius, "radius", kLargestRadius);
-  each(info.mass, "mass", 1e300);
-  if (info.phases_per_cycle < 0 || info.phases_per_cycle > kMostPhases)
-    refuse("parameters/phases_per_cycle",
-           fmt::format("is {}; it must be between 0 and {}.", info.phases_per_cycle, kMostPhases));
-  if (info.drive) {
-    if (!(info.drive->amplitude >= 0 && info.drive->amplitude <= kFarthest))
-      refuse("parameters/drive/amplitude",
-             fmt::format("is {:g}; it must be between 0 and {:g}.", info.drive->amplitude, kFarthest));
-    if (!(info.drive->omega >= 0 && info.drive->omega <= 1e9))
-      refuse("parameters/drive/omega",
-             fmt::format("is {:g}; it must be between 0 and 1e9.", info.drive->omega));
-    if (info.drive->harmonics.size() > kMostHarmonics)
-      refuse("parameters/drive/harmonics",
-             fmt::format("has {} harmonics, the bound is {}.", info.drive->harmonics.size(), kMostHarmonics));
-    for (const Harmonic& h : info.drive->harmonics)
-      if (!(h.amplitude >= 0 && h.amplitude <= kLargestHarmonic && h.phase >= 0 && h.phase < 1))
-        refuse("parameters/drive/harmonics",
-               fmt::format("contains [{:g}, {:g}]; a relative amplitude must be between 0 and {:g}, a phase "
-                           "at least 0 and less than 1.",
-                           h.amplitude, h.phase, kLargestHarmonic));
-  }
-  for (const auto& [name, value] : {std::pair{"sigma_m", info.scale.sigma_m},
-                                    {"gravity_m_s2", info.scale.gravity_m_s2},
-                                    {"pixels_per_sigma", info.scale.pixels_per_sigma}})
-    if (value && !(*value > 0 && std::isfinite(*value)))
-      refuse(std::string("parameters/scale/") + name, fmt::format("is {:g}; it must be above 0.", *value));
+  require_ranges(info, path.string());
 }
 
 void H5mdReader::Impl::open_columns(const std::string& group) {
@@ -452,15 +402,8 @@ void H5mdReader::read(std::size_t index, Frame& frame) const {
     if (r.info.columns.phase) {
       r.phase.read(index, h5::native<int>(), &frame.phase);
       r.cycle.read(index, h5::native<std::int64_t>(), &frame.cycle);
-      constexpr std::int64_t kMostCycles = 1'000'000'000'000;
-      if (frame.phase < -1 || frame.phase >= std::max(r.info.phases_per_cycle, 1))
-        r.refuse(fmt::format("frame {}", index),
-                 fmt::format("its phase is {}; it must be below {} phases per cycle.", frame.phase,
-                             r.info.phases_per_cycle));
-      if (frame.cycle < -kMostCycles || frame.cycle > kMostCycles)
-        r.refuse(fmt::format("frame {}", index),
-                 fmt::format("its cycle is {}; it must be within {}.", frame.cycle, kMostCycles));
     }
+    require_ranges(frame, index, r.info, r.path.string());
   } catch (const RunError& e) {
     r.refuse(fmt::format("frame {}", index), e.what());
   }

@@ -83,6 +83,17 @@ def test_wrong_options_have_the_sentence_of_the_program(tmp_path):
         twincell.locate([np.zeros((40, 40), np.uint8), np.zeros((40, 41), np.uint8)], diameter=10, dark=True)
 
 
+@pytest.mark.parametrize("stack, sentence", [
+    (np.zeros((60, 80, 3), np.uint8), r"stack: has the shape \(60, 80, 3\), as a picture in colours"),
+    ([], "pictures: holds no frame"),
+    (np.zeros((0, 0), np.uint8), r"picture: has the shape \(0, 0\)"),
+    ([np.zeros((20, 20), np.uint8), np.zeros((21, 20), np.uint8)], "picture 1: is 20 x 21 px, but the first"),
+])
+def test_what_is_no_stack_is_refused(stack, sentence):
+    with pytest.raises(twincell.Error, match=sentence):
+        twincell.locate(stack)
+
+
 def test_view_is_the_page_of_the_verb(tmp_path):
     page = tmp_path / "page.html"
     options = {"frames": "10:13", "diameter": [12.0], "dark": True}

@@ -233,6 +233,44 @@ def test_errors_of_options_have_the_sentence_of_the_program(sim_file):
         twincell.Trajectory.open(sim_file).positions[99]
 
 
+@pytest.mark.parametrize("own, sentence", [
+    ({"radii": [1e9, 0.5]}, "from_arrays: radius: 1e+09 of bead 0 is out of range"),
+    ({"radii": [0.5, float("nan")]}, "from_arrays: radius: nan of bead 1"),
+    ({"masses": [0, 1]}, "from_arrays: mass: 0 of bead 0"),
+    ({"phase": [9], "cycle": [0], "phases_per_cycle": 4}, "its phase is 9; it must be below 4"),
+    ({"phases_per_cycle": -3}, "phases_per_cycle: is -3"),
+    ({"drive": twincell.Drive(float("nan"), 1)}, "parameters/drive/amplitude: is nan"),
+    ({"positions": [[[0, 0], [1e12, 0]]]}, "cell: its x side goes from -0.5 to 1e+12"),
+])
+def test_numbers_that_no_file_can_hold_are_refused(own, sentence):
+    with pytest.raises(twincell.InputError) as e:
+        twincell.Trajectory.from_arrays(own.pop("positions", np.zeros((1, 2, 2))), **own)
+    assert sentence in str(e.value)
+
+
+def test_a_foreign_file_is_not_replaced(tmp_path, sim_file):
+    thesis = tmp_path / "thesis.h5"
+    thesis.write_text("mine")
+    with pytest.raises(twincell.ConfigError, match="not a trajectory made by twincell; choose another name.$"):
+        twincell.Trajectory.open(sim_file).write(thesis)
+    assert thesis.read_text() == "mine"
+
+
+def test_an_output_is_never_an_input(tmp_path, scene_file):
+    start = tmp_path / "start.h5"
+    trajectory = twincell.simulate(twincell.Scene.from_toml(scene_file), start)
+    before = start.read_bytes()
+    link = tmp_path / "link.h5"
+    link.symlink_to(start)
+    goes_on = twincell.Scene.from_toml(scene_file, set=["start.kind=trajectory", f"start.from={start}"])
+    for output in (start, link):
+        with pytest.raises(twincell.ConfigError, match="the output is an input of the same call"):
+            twincell.simulate(goes_on, output)
+        with pytest.raises(twincell.ConfigError, match="the output is an input of the same call"):
+            trajectory.write(output)
+    assert start.read_bytes() == before
+
+
 def test_docstrings_are_those_of_the_headers():
     from conftest import ROOT
     header = (ROOT / "analysis/neighbours/bond_order.hpp").read_text()

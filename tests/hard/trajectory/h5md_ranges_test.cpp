@@ -31,10 +31,10 @@ TrajectoryInfo sound() {
 }
 
 void write(const std::filesystem::path& path, const TrajectoryInfo& info, int phase = 0,
-           std::int64_t cycle = 0) {
+           std::int64_t cycle = 0, double x = 1) {
   H5mdWriter writer(path, info);
   Frame frame;
-  frame.position = {Vec3(1, 0, 1), Vec3(3, 0, 1)};
+  frame.position = {Vec3(x, 0, 1), Vec3(3, 0, 1)};
   frame.phase = phase;
   frame.cycle = cycle;
   writer.append(frame);
@@ -115,6 +115,12 @@ TEST(H5mdRanges, WhatNoCellCanBeIsRefusedByEveryVerb) {
   expect_refused(file, "cycle");
   write(file, sound(), 20);
   expect_refused(file, "phase");
+  for (const double far : {1.1e7, -1e300, HUGE_VAL}) {
+    write(file, sound(), 0, 0, far);
+    expect_refused(file, "positions must be within 1e+07");
+  }
+  write(file, sound(), 0, 0, 1e7);
+  EXPECT_EQ(run_program({"validate", file}).code, 0);
 }
 
 /// Changes a valid file by hand, as damage or malice would.

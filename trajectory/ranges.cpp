@@ -1,0 +1,83 @@
+#include "trajectory/ranges.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/error.hpp"
+
+namespace twincell {
+
+void require_ranges(const TrajectoryInfo& info, const std::string& name) {
+  const auto refuse = [&](const std::string& key, const std::string& complaint) {
+    throw InputError({name, 0, 0, key}, complaint);
+  };
+  constexpr double kLargestRadius = 1e5;  // sigma
+  constexpr int kMostPhases = 1'000'000;
+  if (info.box.dimension != 2 && info.box.dimension != 3)
+    refuse("twincell/cell@dimension", fmt::format("is {}; it must be 2 or 3.", info.box.dimension));
+  for (int a = 0; a < 3; ++a) {
+    const double low = info.box.lower[a], high = info.box.upper[a];
+    if (!(std::abs(low) <= kFarthestPosition) || !(std::abs(high) <= kFarthestPosition) || low > high)
+      refuse(
+          "cell",
+          fmt::format("its {} side goes from {:g} to {:g}; the bounds must ascend and be within {:g} of 0.",
+                      "xyz"[a], low, high, kFarthestPosition));
+  }
+  const auto each = [&](const std::vector<double>& values, const char* key, double most) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (!(values[i] > 0 && values[i] <= most))
+        refuse(key, fmt::format("{:g} of bead {} is out of range; it must be above 0 and at most {:g}.",
+                                values[i], i, most));
+  };
+  each(info.radius, "radius", kLargestRadius);
+  each(info.mass, "mass", 1e300);
+  if (info.phases_per_cycle < 0 || info.phases_per_cycle > kMostPhases)
+    refuse("parameters/phases_per_cycle",
+           fmt::format("is {}; it must be between 0 and {}.", info.phases_per_cycle, kMostPhases));
+  if (info.drive) {
+    if (!(info.drive->amplitude >= 0 && info.drive->amplitude <= kFarthestPosition))
+      refuse("parameters/drive/amplitude", fmt::format("is {:g}; it must be between 0 and {:g}.",
+                                                       info.drive->amplitude, kFarthestPosition));
+    if (!(info.drive->omega >= 0 && info.drive->omega <= 1e9))
+      refuse("parameters/drive/omega",
+             fmt::format("is {:g}; it must be between 0 and 1e9.", info.drive->omega));
+    if (info.drive->harmonics.size() > kMostHarmonics)
+      refuse("parameters/drive/harmonics",
+             fmt::format("has {} harmonics, the bound is {}.", info.drive->harmonics.size(), kMostHarmonics));
+    for (const Harmonic& h : info.drive->harmonics)
+      if (!(h.amplitude >= 0 && h.amplitude <= kLargestHarmonic && h.phase >= 0 && h.phase < 1))
+        refuse("parameters/drive/harmonics",
+               fmt::format("contains [{:g}, {:g}]; a relative amplitude must be between 0 and {:g}, a phase "
+                           "at least 0 and less than 1.",
+                           h.amplitude, h.phase, kLargestHarmonic));
+  }
+  for (const auto& [word, value] : {std::pair{"sigma_m", info.scale.sigma_m},
+                                    {"gravity_m_s2", info.scale.gravity_m_s2},
+                                    {"pixels_per_sigma", info.scale.pixels_per_sigma}})
+    if (value && !(*value > 0 && std::isfinite(*value)))
+      refuse(std::string("parameters/scale/") + word, fmt::format("is {:g}; it must be above 0.", *value));
+}
+
+void require_ranges(const Frame& frame, std::size_t index, const TrajectoryInfo& info,
+                    const std::string& name) {
+  constexpr std::int64_t kMostCycles = 1'000'000'000'000;
+  const auto refuse = [&](const std::string& complaint) {
+    throw InputError({name, 0, 0, fmt::format("frame {}", index)}, complaint);
+  };
+  for (std::size_t i = 0; i < frame.position.size(); ++i)
+    for (const double x : frame.position[i])
+      if (std::abs(x) > kFarthestPosition)  // NaN: the bead is missing
+        refuse(
+            fmt::format("bead {} is at {:g}; positions must be within {:g} of 0.", i, x, kFarthestPosition));
+  if (!info.columns.phase) return;
+  if (frame.phase < -1 || frame.phase >= std::max(info.phases_per_cycle, 1))
+    refuse(fmt::format("its phase is {}; it must be below {} phases per cycle.", frame.phase,
+                       info.phases_per_cycle));
+  if (frame.cycle < -kMostCycles || frame.cycle > kMostCycles)
+    refuse(fmt::format("its cycle is {}; it must be within {}.", frame.cycle, kMostCycles));
+}
+
+}  // namespace twincell
