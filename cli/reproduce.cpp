@@ -132,7 +132,8 @@ std::optional<double> earlier_cost(const fs::path& folder, const Reproducible& w
 /// Runs a figure, or judges its stored runs again, and writes its files into `folder`. \returns its document
 /// and text
 std::pair<nlohmann::json, std::string> make(const Reproducible& what, const ReproduceOptions& options,
-                                            const Share& share, const fs::path& folder, const fs::path& from,
+                                            const Workers& on_device, const Share& share,
+                                            const fs::path& folder, const fs::path& from,
                                             const Common& common) {
   std::optional<nlohmann::json> stored;
   if (!from.empty()) {
@@ -142,8 +143,7 @@ std::pair<nlohmann::json, std::string> make(const Reproducible& what, const Repr
           fmt::format("does not work for {}, whose runs take seconds: run it again.", what.name));
     stored = stored_document(from);
   }
-  // Before the folder is made: without a card nothing happens.
-  const Workers workers = workers_of(what.on_device ? options.device : "", common);
+  const Workers workers = what.on_device ? on_device : workers_of("", common);
   claim_shared_folder(folder, Product::runs());
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   double core_minutes = stored ? unknown : earlier_cost(folder, what).value_or(unknown);
@@ -222,7 +222,8 @@ void run_one(const ReproduceOptions& options, const Common& common) {
   }
   const double minutes = options.budget.value_or(kDefaultMinutes);
   const auto [document, text] =
-      make(what, options, {minutes, options.full ? 1e300 : 60 * minutes}, folder, options.stored, common);
+      make(what, options, workers_of(options.device, common), {minutes, options.full ? 1e300 : 60 * minutes},
+           folder, options.stored, common);
   print_result(common, document, text);
 }
 
@@ -249,6 +250,7 @@ void run_all(const ReproduceOptions& options, const Common& common) {
     throw ConfigError(
         {"", 0, 0, "stored"},
         fmt::format("is {}; with --all it must be a folder of NAME.json files.", options.stored));
+  const Workers on_device = workers_of(options.device, common);  // before the folder is made
   claim_shared_folder(folder, Product::runs());
   const double hours = options.budget.value_or(kDefaultHours);
   std::string command = "twincell reproduce --all";
@@ -276,7 +278,7 @@ void run_all(const ReproduceOptions& options, const Common& common) {
     if (!from.empty() && !what.judges_stored)
       document = stored_document(from);
     else
-      document = make(what, options, shares.at(what.name), folder / what.name, from, common).first;
+      document = make(what, options, on_device, shares.at(what.name), folder / what.name, from, common).first;
     nlohmann::json& counts = summary["figures"][what.name];
     for (const auto& verdict : reproduce::kVerdicts) counts[std::string(verdict.word)] = 0;
     for (const auto& t : document["targets"]) {

@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "core/median.hpp"
 #include "imaging/settings/configure_locator.hpp"
+#include "imaging/stack/chosen_frames.hpp"
 #include "imaging/stack/open_frames.hpp"
 
 namespace twincell::twin {
@@ -189,17 +190,6 @@ void survey_edges(CellSurvey& s, const SurveyOptions& options, const ProgressOf&
          "state cell.width and camera.origin_px by hand, or cell.sides = \"periodic\""});
 }
 
-/// The first frames of a stack.
-class FirstFrames : public ReadableFrames {
- public:
-  using ReadableFrames::ReadableFrames;
-  static constexpr int kMost = 2000;
-  bool next(cv::Mat& frame) override { return read() < kMost && ReadableFrames::next(frame); }
-  [[nodiscard]] std::size_t announced() const override {
-    return std::min<std::size_t>(kMost, ReadableFrames::announced());
-  }
-};
-
 /// Adds an upright wall to the parameters of a cell.
 void add_wall(calibration::FitReport& fit, const std::string& side, const calibration::Estimate& x) {
   fit.names.insert(fit.names.end(), {"x_" + side, "tilt_" + side});
@@ -216,10 +206,11 @@ void add_wall(calibration::FitReport& fit, const std::string& side, const calibr
 /// Walls and plate that no edge shows, from the beads that touch them.
 void survey_bed(CellSurvey& s, const imaging::LocatorOptions& locator, const SurveyOptions& options,
                 const ProgressOf& progress) {
-  FirstFrames frames(s.stack);
+  constexpr int kMostFrames = 2000;
+  const auto frames = imaging::chosen_frames(std::make_unique<ReadableFrames>(s.stack), {.end = kMostFrames});
   const auto bar = progress("beads of all frames");
   const calibration::BeadFrames beads =
-      calibration::locate_beads(frames, locator, std::nullopt, FirstFrames::kMost, options.threads, *bar);
+      calibration::locate_beads(*frames, locator, std::nullopt, kMostFrames, options.threads, *bar);
   // A bed that the picture cuts may have its walls outside. Single beads that fly out of it do not matter.
   constexpr double kFew = 0.01;
   double all = 0, cut = 0;

@@ -101,6 +101,12 @@ std::optional<TimeOnPlate> time_on_plate(double gamma) {
   return std::nullopt;
 }
 
+std::optional<TimeOnPlate> time_at_rest(double gamma) {
+  auto on = time_on_plate(gamma);
+  if (on && gamma > 1) on->from += kImpact;
+  return on;
+}
+
 void BedSteps::append(const Frame& frame) {
   if (frame.phase >= 0 && before_.phase >= 0 && frame.step == before_.step + 1 &&
       frame.position.size() == before_.position.size()) {
@@ -152,17 +158,19 @@ BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info) {
   double last = 0;
   std::string why = "at no phase of the cycle do its lowest beads move like a plate";
   for (double amplitude = kSmallest * stated; amplitude < kLargest * stated; amplitude *= kRatio) {
-    const auto on = time_on_plate(amplitude * per);
-    if (!on) break;
-    const double from = amplitude * per <= 1 ? on->from : on->from + kImpact;
-    const Fit fit = fit_steps(bed.steps(), from, on->to);
+    const auto rest = time_at_rest(amplitude * per);
+    if (!rest) break;
+    const Fit fit = fit_steps(bed.steps(), rest->from, rest->to);
     if (fit.cycles < kFewestCycles || fit.steps < kFewestSteps) break;  // larger A leaves fewer phases
     const double ratio = fit.a / amplitude;
     const bool through = last > 1 && ratio <= 1;
     last = ratio;
     if (!through || fit.misfit > kMisfit || std::abs(fit.b) > kPhaseError * fit.a) continue;
-    const BedDrive here{
-        .amplitude = fit.a, .amplitude_error = fit.error, .cycles = fit.cycles, .from = from, .to = on->to};
+    const BedDrive here{.amplitude = fit.a,
+                        .amplitude_error = fit.error,
+                        .cycles = fit.cycles,
+                        .from = rest->from,
+                        .to = rest->to};
     // If several amplitudes explain the motion, take the one closest to the stated amplitude.
     if (!found || std::abs(std::log(here.amplitude / stated)) < std::abs(std::log(found->amplitude / stated)))
       found = here;

@@ -29,6 +29,8 @@ struct TimeOnPlate {
   double from = 0, to = 1;
 };
 std::optional<TimeOnPlate> time_on_plate(double gamma);
+/// The same without the tenth of a cycle after a landing, during which the impact still moves the beads.
+std::optional<TimeOnPlate> time_at_rest(double gamma);
 
 /// Receives the frames of a trajectory and stores the steps of the bed's lower surface, about 40 bytes per
 /// frame.

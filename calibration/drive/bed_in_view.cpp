@@ -71,7 +71,7 @@ std::optional<Estimate> wall_of_bed(const BeadFrames& beads, double diameter, bo
 }
 
 PlateOfBed plate_of_bed(const BeadFrames& beads, double diameter, double gamma) {
-  const std::optional<TimeOnPlate> rest = time_on_plate(gamma);
+  const std::optional<TimeOnPlate> rest = time_at_rest(gamma);
   if (!rest) refuse(fmt::format("flies for longer than a cycle at Gamma = {:g}", gamma));
   PlateOfBed plate;
   imaging::BedMotion motion;
@@ -84,16 +84,14 @@ PlateOfBed plate_of_bed(const BeadFrames& beads, double diameter, double gamma) 
   if (plate.phases.dropped > 0 || plate.phases.doubled > 0)
     refuse(fmt::format("shows {} missing and {} doubled frames", plate.phases.dropped, plate.phases.doubled));
 
-  constexpr double kAfterLanding = 0.1;
-  const double from = gamma > 1 ? rest->from + kAfterLanding : 0, to = gamma > 1 ? rest->to : 1;
   const auto angle = [&](std::size_t f) {
     return 2 * std::numbers::pi * plate.phases.at(static_cast<std::int64_t>(f)).phase / n;
   };
   std::vector<std::size_t> resting;
   for (std::size_t f = 0; f < plate.heights.size(); ++f) {
     double t = angle(f) / (2 * std::numbers::pi);
-    if (t > to) t -= 1;
-    if (t >= from && std::isfinite(plate.heights[f])) resting.push_back(f);
+    if (t > rest->to) t -= 1;
+    if (t >= rest->from && std::isfinite(plate.heights[f])) resting.push_back(f);
   }
   constexpr std::size_t kFewest = 8;
   if (resting.size() < kFewest) refuse(fmt::format("rests on the plate in only {} frames", resting.size()));

@@ -29,11 +29,11 @@ struct PlateOfBed {
 
 /// Period, phases, mean height and amplitude of the plate, from a bed that rests on it in a part of each
 /// cycle. The phases are those of estimate_phases() for the mean height of the beads. At the phases at which
-/// a bed without rebound rests on a plate of this strength (time_on_plate(), less a tenth of a cycle after
-/// the landing), the lower side of the bed is fitted by z_0 + a sin th + c cos th. The lower side is the
-/// median over columns one diameter wide of the lowest rim. \param gamma A omega^2/g of the drive \throws
-/// InputError if the bed has no period, frames are missing or doubled, the bed flies for longer than a cycle,
-/// or its lower side does not move as a plate with these phases (c beyond a fifth of a)
+/// a bed without rebound rests on a plate of this strength (time_at_rest()), the lower side of the bed is
+/// fitted by z_0 + a sin th + c cos th. The lower side is the median over columns one diameter wide of the
+/// lowest rim. \param gamma A omega^2/g of the drive \throws InputError if the bed has no period, frames are
+/// missing or doubled, the bed flies for longer than a cycle, or its lower side does not move as a plate with
+/// these phases (c beyond a fifth of a)
 PlateOfBed plate_of_bed(const BeadFrames& beads, double diameter, double gamma);
 
 }  // namespace twincell::calibration

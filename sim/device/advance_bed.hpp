@@ -217,7 +217,7 @@ class BedKernel {
   }
 
   [[nodiscard]] std::int32_t memory_place(int m, std::int32_t pair) const {
-    return bed_.most_pairs * m + pair;
+    return pair_place(bed_.most_pairs, pair, m);
   }
 
   /// \param at position of bead b

@@ -90,6 +90,10 @@ inline constexpr std::int32_t kParts = 32;
 constexpr std::int32_t slot_place(std::int32_t beads, std::int32_t b, std::int32_t k) {
   return beads * k + b;
 }
+/// Place of number m of the memory of a pair.
+constexpr std::int32_t pair_place(std::int32_t most_pairs, std::int32_t pair, std::int32_t m) {
+  return most_pairs * m + pair;
+}
 /// Place of number m of the memory of bead b at wall w.
 constexpr std::int32_t wall_place(std::int32_t beads, std::int32_t memory, std::int32_t b, std::int32_t w,
                                   std::int32_t m) {

@@ -82,20 +82,19 @@ class DeviceSolver : public Solver {
       }
       there_.last_stop = static_cast<std::int64_t>(count) - 1;
       launch(s);
-      fetch(count - 1);
-      const bool failed = here_.report->failed != 0;
-      const std::int64_t done = here_.report->steps;
-      for (Size k = 0; k < count && !(failed && there_.stops[k] >= done); ++k, ++next) {
-        fetch(k);
+      const BedReport last = report_at(count - 1);
+      const bool failed = last.failed != 0;
+      for (Size k = 0; k < count && !(failed && there_.stops[k] >= last.steps); ++k, ++next) {
         s.step = begin + there_.stops[k];
-        beads_.store(s, order_);
         if (!stops[next].ends_piece) continue;
+        fetch(k);
+        beads_.store(s, order_);
         check_motion(s, limits_);
         after();
       }
       if (failed) {
         fetch(count - 1);
-        s.step = begin + done;
+        s.step = begin + last.steps;
         beads_.store(s, order_);
         explain_overlap(s, limits_);
       }
@@ -147,7 +146,7 @@ class DeviceSolver : public Solver {
     return all;
   }
   [[nodiscard]] Size memory_place(Size m, std::int32_t pair) const {
-    return static_cast<Size>(here_.most_pairs) * m + static_cast<Size>(pair);
+    return static_cast<Size>(pair_place(here_.most_pairs, pair, static_cast<std::int32_t>(m)));
   }
   [[nodiscard]] Size wall_memory_place(std::int32_t b, std::int32_t w, Size m) const {
     return static_cast<Size>(
@@ -341,6 +340,12 @@ class DeviceSolver : public Solver {
     batcher_.advance(kernel_, there_);
     there_.fresh = false;
     there_.known = true;
+  }
+  [[nodiscard]] BedReport report_at(Size stop) const {
+    BedReport report;
+    const auto place = reinterpret_cast<const std::byte*>(here_.report) - image();
+    std::memcpy(&report, there_.host_states + parts_.state * stop + place, sizeof report);
+    return report;
   }
   /// Fetches the state at a stop.
   void fetch(Size stop) {

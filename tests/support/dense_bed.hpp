@@ -82,9 +82,15 @@ inline Scene scene_of(const Case& c, const Laws& laws) {
   return read_scene_text(text, "bed");
 }
 
-inline System bed_of(const Scene& scene, const Plan& plan) {
+/// The beads of the start, at their velocities.
+inline System start_of(const Scene& scene, const Plan& plan) {
   System s = make_system(scene, plan);
   s.beads = make_start(scene).beads;
+  return s;
+}
+
+inline System bed_of(const Scene& scene, const Plan& plan) {
+  System s = start_of(scene, plan);
   std::mt19937_64 engine(11);
   const auto random = [&] { return static_cast<double>(engine() >> 11) * 0x1p-52 - 1; };
   for (Bead& b : s.beads) {

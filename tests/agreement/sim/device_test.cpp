@@ -110,8 +110,7 @@ TEST(DeviceSolver, KeepsItsListsOverALongRun) {
       "\"random\"\n",
       "shaken");
   const Plan plan = make_plan(scene);
-  System start = make_system(scene, plan);
-  start.beads = make_start(scene).beads;
+  System start = start_of(scene, plan);
   const std::int64_t steps = 2 * plan.steps_per_period;
   const Outcome reference = by_oracle(plan, start, steps);
   Batcher batcher(make_host_executor({.count = 128}));
@@ -130,8 +129,7 @@ TEST(DeviceSolver, StopsShowTheSystemThere) {
       "1e5\ngamma_n = 10.0\n[start]\nkind = \"random\"\n",
       "shaken");
   const Plan plan = make_plan(scene);
-  System start = make_system(scene, plan);
-  start.beads = make_start(scene).beads;
+  System start = start_of(scene, plan);
   const std::vector<std::int64_t> pieces = {3,  1,  1500, 40, 40, 40, 2,  900, 40, 40, 40, 40, 40, 40,
                                             40, 40, 40,   40, 40, 40, 40, 40,  40, 40, 40, 40, 40, 40};
   for (const bool too_fast : {false, true}) {
