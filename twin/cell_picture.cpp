@@ -164,7 +164,9 @@ void draw_motion(cv::Mat3b& picture, cv::Rect area, const CellSurvey& s) {
           picture,
           place(d.frames[f].tick, std::clamp(h - d.z0, -kHeadroom * d.amplitude, kHeadroom * d.amplitude)), 3,
           kDot);
-  imaging::draw_text(picture, "height of the plate, px, against frame: seen (dots), fitted (line)",
+  imaging::draw_text(picture,
+                     s.plate_of_bed ? "lower side of the bed, px, against frame: seen (dots); plate (line)"
+                                    : "height of the plate, px, against frame: seen (dots), fitted (line)",
                      {area.x, area.y - 8}, kText);
   imaging::draw_text(picture, "0", {area.x - 2, area.y + area.height + kLine - 4}, kText);
   imaging::draw_text(picture, fmt::format("{:.0f}", last),
