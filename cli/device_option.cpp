@@ -25,9 +25,7 @@ CLI::Option* add_device_option(CLI::App& verb, std::string& device) {
 Workers workers_of(const std::string& device, const Common& common) {
   if (device == "host") return {sim::SolverKind::device_on_host, common.n_threads()};
   if (device != "gpu") return {sim::SolverKind::best, common.n_threads()};
-  note(common, sim::graphics_card() +
-                   ". This version was tested on processors only; the one before it had the same bits on a card. "
-                   "Compare some points with a run without --device.");
+  note(common, sim::graphics_card() + ".");
   return {sim::SolverKind::gpu, common.threads > 0 ? common.threads : kBeds};
 }
 

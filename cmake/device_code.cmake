@@ -4,7 +4,7 @@ set(TWINCELL_DEVICE AUTO CACHE STRING "Device code for graphics cards: AUTO (whe
 
 # Inlined, a kernel keeps the numbers of a contact in registers. No contraction and no errno: see floating_point.cmake.
 set(device_options -x cuda --cuda-device-only -nocudainc -nocudalib --cuda-gpu-arch=sm_70 -Wno-unknown-cuda-version
-  -Xclang -fcuda-allow-variadic-functions -std=c++20 -S -O3 -ffp-contract=off -fno-math-errno -mllvm -inline-threshold=100000)
+  -Xclang -fcuda-allow-variadic-functions -Xclang -target-feature -Xclang +ptx63 -std=c++20 -S -O3 -ffp-contract=off -fno-math-errno -mllvm -inline-threshold=100000)
 
 function(twincell_find_device_compiler)
   if(TWINCELL_DEVICE STREQUAL "OFF")

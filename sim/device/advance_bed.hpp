@@ -3,16 +3,20 @@
 /// The device kernel: one block of threads advances one bed by many steps. The same source runs on a graphics
 /// card and on the processor. An execution space states how the beads are divided among threads:
 ///
-///     space.for_each(n, f)   every f(0) ... f(n - 1), in any order and by any thread; then all threads wait
-///     space.any(n, f)        the same, and whether f returned true somewhere, known to all threads
-///     space.once(f)          f() by one thread; then all threads wait
+///     space.for_each(n, f)    every f(0) ... f(n - 1), in any order and by any thread; then all threads wait
+///     space.any(n, f)         the same, and whether f returned true somewhere, known to all threads
+///     space.once(f)           f() by one thread; then all threads wait
+///     space.sort(n, f, list)  the same as for_each; each i for which f returns Sorted::front or back is put
+///                             at that end of list[n], in any order; their numbers, known to all threads
 ///
 /// Between these calls every thread executes the same statements and writes nothing.
 ///
-/// A step has two parts, with a barrier after each. In the first, every contact is computed once, by any
-/// thread, and its force is stored. In the second, each bead sums the forces of its contacts and moves. With
-/// the kernels of simd_kernels.hpp the result has the bits of all other solvers. (Tried and dropped: each
-/// bead computes its own contacts, so that both beads of a pair compute it.)
+/// A step has three parts, with a barrier after each. In the first, the listed pairs that touch are
+/// collected, and the beads that touch a wall. In the second, every contact is computed once, by any thread,
+/// and its force is stored. In the third, each bead sums the forces of its contacts and moves. With the
+/// kernels of simd_kernels.hpp the result has the bits of all other solvers. (Tried and dropped: each bead
+/// computes its own contacts, so that both beads of a pair compute it; contacts in the order of the list of
+/// pairs, among which 18 of the 32 threads of a warp had one.)
 
 #include "sim/contact/plate_drag.hpp"
 #include "sim/device/bed.hpp"
@@ -21,6 +25,12 @@
 #include "sim/system/nearest_image.hpp"
 
 namespace twincell::sim {
+
+/// Where Space::sort() puts an index, and how many it put at each end.
+enum class Sorted : std::int32_t { out, front, back };
+struct SortedCounts {
+  std::int32_t front, back;
+};
 
 template <class Space, class Laws, int D, Velocity kVelocity>
 class BedKernel {
@@ -58,7 +68,28 @@ class BedKernel {
 
   static std::int32_t record(std::int32_t b) { return kRecord<D> * b; }
   /// An array as its layout aligns it (bed_memory.cpp), so that a card reads two numbers at once.
-  static double* aligned(double* array) { return static_cast<double*>(__builtin_assume_aligned(array, 64)); }
+  template <class T>
+  static T* aligned(T* array) {
+    return static_cast<T*>(__builtin_assume_aligned(array, 64));
+  }
+  [[nodiscard]] const double* record_of(std::int32_t b) const { return aligned(bed_.records) + record(b); }
+  struct Place {
+    double r[D];
+    double operator[](int c) const { return r[c]; }
+  };
+  [[nodiscard]] Place place_of(std::int32_t b) const {
+    Place place;
+    ScalarLanes::numbers<D>(record_of(b), place.r);
+    return place;
+  }
+  [[nodiscard]] double* force_of(std::int32_t b) const { return aligned(bed_.forces) + record(b); }
+  [[nodiscard]] double* force_of_pair(std::int32_t pair) const {
+    return aligned(bed_.pair_forces) + std::ptrdiff_t{kForce} * pair;
+  }
+  /// The beads of a pair, the lower number first.
+  [[nodiscard]] const std::int32_t* beads_of(std::int32_t pair) const {
+    return aligned(bed_.pair_beads) + 2 * pair;
+  }
 
   /// Keeps the state for the transfer. \param failed see BedReport
   void report(std::int64_t stop, std::int64_t steps, bool failed) {
@@ -103,8 +134,10 @@ class BedKernel {
   [[nodiscard]] bool is_outside(std::int32_t b) const {
     const double bound = 0.499 * bed_.skin;
     double square = 0;
+    const Place at = place_of(b);
+    const double* before = bed_.listed_at + D * b;
     for (int c = 0; c < D; ++c) {
-      const double moved = bed_.records[record(b) + c] - bed_.listed_at[D * b + c] - carried_[c];
+      const double moved = at[c] - before[c] - carried_[c];
       square += moved * moved;
     }
     return !(square <= bound * bound);  // a NaN position is outside
@@ -121,7 +154,7 @@ class BedKernel {
     double sum[D] = {};
     for (std::int32_t k = 0; k < some; ++k) {
       const std::int32_t b = k * bed_.beads / some;
-      for (int c = 0; c < D; ++c) sum[c] += bed_.records[record(b) + c] - bed_.listed_at[D * b + c];
+      for (int c = 0; c < D; ++c) sum[c] += place_of(b)[c] - bed_.listed_at[D * b + c];
     }
     for (int c = 0; c < D; ++c) carried_[c] = sum[c] / some;
     return space_.any(bed_.beads, [&](std::int32_t b) { return is_outside(b); });
@@ -169,7 +202,7 @@ class BedKernel {
     const std::int32_t olds = bed_.neighbours[list_][b];
     std::int32_t old_other = olds > 0 ? bed_.partner[list_][slot(b, 0)] : bed_.beads;
     double at[D];
-    for (int c = 0; c < D; ++c) at[c] = bed_.listed_at[D * b + c] = bed_.records[record(b) + c];
+    for (int c = 0; c < D; ++c) at[c] = bed_.listed_at[D * b + c] = place_of(b)[c];
     for (std::int32_t other = 0; other < bed_.beads; ++other) {
       if (other == b) continue;
       while (old_other < other) {
@@ -212,6 +245,7 @@ class BedKernel {
         bed_.memory[next][memory_place(m, pair)] = old >= 0 ? bed_.memory[list_][memory_place(m, old)] : 0;
       bed_.pair[next][slot(b, k)] = pair;
       bed_.pair_beads[2 * pair] = b, bed_.pair_beads[2 * pair + 1] = other;
+      bed_.was_touched[pair] = 1;
       ++pair;
     }
   }
@@ -225,9 +259,9 @@ class BedKernel {
     const double far =
         constants_of(b < other ? b : other, b < other ? other : b)[constant::kReach] + bed_.skin;
     double square = 0;
+    const Place there = place_of(other);
     for (int c = 0; c < D; ++c) {
-      const double there = bed_.records[record(other) + c];
-      double apart = b < other ? at[c] - there : there - at[c];  // the same for both beads
+      double apart = b < other ? at[c] - there[c] : there[c] - at[c];  // the same for both beads
       if (bed_.periodic) apart += nearest_shift(apart, bed_.period[c]);
       square += apart * apart;
     }
@@ -247,19 +281,50 @@ class BedKernel {
   /// \returns whether all overlaps are within their bound
   bool contacts(std::int64_t step) {
     const double* plate = bed_.plate + step * plate_row(bed_.walls);
-    return !space_.any(pairs_ + bed_.beads, [&](std::int32_t k) {
-      const double overlap = k < pairs_ ? pair_contact(k) : wall_contacts(k - pairs_, plate);
-      return overlap > bed_.overlap_bound;
+    const std::int32_t all = pairs_ + bed_.beads;
+    const SortedCounts n = space_.sort(all, bed_.touching, [&](std::int32_t k) {
+      if (k < pairs_) return is_touched(k) ? Sorted::front : Sorted::out;
+      add_drag(k - pairs_, plate);
+      return touches_wall(k - pairs_, plate) ? Sorted::back : Sorted::out;
     });
+    // Walls begin with a warp of their own: threads of one warp that take different ways wait for each other.
+    const std::int32_t walls = (n.front + kWarp - 1) / kWarp * kWarp;
+    return !space_.any(walls + n.back, [&](std::int32_t k) {
+      if (k >= walls)
+        return wall_contacts(bed_.touching[all - 1 - (k - walls)] - pairs_, plate) > bed_.overlap_bound;
+      return k < n.front && pair_contact(bed_.touching[k]) > bed_.overlap_bound;
+    });
+  }
+
+  /// Whether pair_kernel() has something to compute for this pair. If not, the pair has no memory from now on
+  /// and its stored force is not read.
+  [[nodiscard]] bool is_touched(std::int32_t pair) {
+    const std::int32_t lower = beads_of(pair)[0], higher = beads_of(pair)[1];
+    const Place from = place_of(higher), to = place_of(lower);
+    double r2 = 0;
+    for (int c = 0; c < D; ++c) {
+      double d = to[c] - from[c];
+      if (bed_.periodic) d = d + nearest_shift(d, bed_.period[c]);
+      r2 = c == 0 ? d * d : fma(d, d, r2);
+    }
+    bool touched = r2 < constants_of(lower, higher)[constant::kEdge];
+    if constexpr (kVelocity == Velocity::full_step)
+      touched = touched || bed_.memory[list_][memory_place(Laws::template kMemory<D>, pair)] != 0;
+    if (!touched && bed_.was_touched[pair] != 0)
+      for (int m = 0; m < kMemory; ++m) bed_.memory[list_][memory_place(m, pair)] = 0;
+    bed_.was_touched[pair] = touched ? 1 : 0;
+    return touched;
   }
 
   void add_pair_forces(std::int32_t b) {
     const std::int32_t used = bed_.neighbours[list_][b];
-    double* force = aligned(bed_.forces) + record(b);
+    double* force = force_of(b);
     double sum[kForce] = {};
     for (std::int32_t k = 0; k < used; ++k) {
-      const double* of_pair =
-          aligned(bed_.pair_forces) + std::ptrdiff_t{kForce} * bed_.pair[list_][slot(b, k)];
+      const std::int32_t pair = bed_.pair[list_][slot(b, k)];
+      if (bed_.was_touched[pair] == 0) continue;
+      double of_pair[kForce];
+      for (int c = 0; c < kForce; c += 2) ScalarLanes::numbers<2>(force_of_pair(pair) + c, of_pair + c);
       const double sign = bed_.partner[list_][slot(b, k)] > b ? 1 : -1;
       for (int c = 0; c < D; ++c) sum[c] += sign * of_pair[c];
       if constexpr (Laws::Tangential::kActs)
@@ -277,12 +342,12 @@ class BedKernel {
 
   /// Computes the contact of a pair and stores its force. \returns the overlap
   double pair_contact(std::int32_t pair) {
-    const std::int32_t lower = bed_.pair_beads[2 * pair], higher = bed_.pair_beads[2 * pair + 1];
+    const std::int32_t lower = beads_of(pair)[0], higher = beads_of(pair)[1];
     const std::int32_t i = record(lower), j = record(higher), at = 0;
     double shift[D] = {};
     if (bed_.periodic)
       for (int c = 0; c < D; ++c)
-        shift[c] = nearest_shift(bed_.records[i + c] - bed_.records[j + c], bed_.period[c]);
+        shift[c] = nearest_shift(place_of(lower)[c] - place_of(higher)[c], bed_.period[c]);
     double force[kForce] = {};  // stays 0 if there is no contact
     double memory[kMemory + 1];
     for (int m = 0; m < kMemory; ++m) memory[m] = bed_.memory[list_][memory_place(m, pair)];
@@ -296,20 +361,43 @@ class BedKernel {
     p.dt = bed_.dt, p.locate = bed_.locate, p.quantum = bed_.quantum;
     const double overlap = pair_kernel<StoringLanes, Laws, D, kVelocity>(p);
     for (int m = 0; m < kMemory; ++m) bed_.memory[list_][memory_place(m, pair)] = memory[m];
-    double* of_pair = aligned(bed_.pair_forces) + std::ptrdiff_t{kForce} * pair;
-    for (int c = 0; c < kForce; ++c) of_pair[c] = force[c];
+    for (int c = 0; c < kForce; c += 2)
+      ScalarLanes::store(ScalarLanes::Two{force[c], force[c + 1]}, force_of_pair(pair) + c);
     return overlap;
   }
 
-  /// Adds the forces of the walls and of drag to a bead. \returns the largest overlap
-  double wall_contacts(std::int32_t b, const double* plate) {
-    double overlap = 0;
-    for (std::int32_t w = 0; w < bed_.walls; ++w) overlap = max(overlap, wall_contact(b, w, plate));
+  void add_drag(std::int32_t b, const double* plate) {
     if constexpr (D == 2)
       if (bed_.has_drag)
         for (int c = 0; c < D; ++c)
-          bed_.forces[record(b) + c] += plate_drag_force(
-              bed_.drag[b], bed_.records[record(b) + kRecord<D> / 2 + c], plate[3 + c], bed_.quantum);
+          force_of(b)[c] +=
+              plate_drag_force(bed_.drag[b], record_of(b)[kRecord<D> / 2 + c], plate[3 + c], bed_.quantum);
+  }
+
+  /// Whether a bead touches a wall or remembers one.
+  [[nodiscard]] bool touches_wall(std::int32_t b, const double* plate) const {
+    bool touches = false;
+    for (std::int32_t w = 0; w < bed_.walls; ++w) touches = touches || has_wall_contact(b, w, plate);
+    return touches;
+  }
+  [[nodiscard]] bool has_wall_contact(std::int32_t b, std::int32_t w, const double* plate) const {
+    const Place at = place_of(b);
+    const double* normal = bed_.normals + 3 * w;
+    double height = fma(at[0], normal[0], -plate[6 + w]);
+    for (int c = 1; c < D; ++c) height = fma(at[c], normal[c], height);
+    bool known = false;
+    for (int m = 0; m < kMemory; ++m) known = known || bed_.wall_memory[wall_memory_place(b, w, m)] != 0;
+    return wall_constants_of(b, w)[constant::kReach] - height > 0 || known;
+  }
+  [[nodiscard]] const double* wall_constants_of(std::int32_t b, std::int32_t w) const {
+    return bed_.wall_constants + std::ptrdiff_t{kCount} * (bed_.kinds * w + bed_.kind[b]);
+  }
+
+  /// Adds the forces of the walls to a bead. \returns the largest overlap
+  double wall_contacts(std::int32_t b, const double* plate) {
+    double overlap = 0;
+    for (std::int32_t w = 0; w < bed_.walls; ++w)
+      if (has_wall_contact(b, w, plate)) overlap = max(overlap, wall_contact(b, w, plate));
     return overlap;
   }
 
@@ -318,20 +406,12 @@ class BedKernel {
     const std::int32_t i = record(b);
     WallArgs g{};
     for (int c = 0; c < D; ++c) g.n[c] = bed_.normals[3 * w + c];
-    g.offset = plate[6 + w];
-    g.constants = bed_.wall_constants + std::ptrdiff_t{kCount} * (bed_.kinds * w + bed_.kind[b]);
-    double memory[kMemory + 1];
-    bool known = false;
-    for (int m = 0; m < kMemory; ++m) {
-      memory[m] = bed_.wall_memory[wall_memory_place(b, w, m)];
-      known = known || memory[m] != 0;
-    }
-    // The walls are few, but most beads touch none: most calls end here.
-    double height = fma(bed_.records[i], g.n[0], -g.offset);
-    for (int c = 1; c < D; ++c) height = fma(bed_.records[i + c], g.n[c], height);
-    if (!(g.constants[constant::kReach] - height > 0) && !known) return 0;
     for (int c = 0; c < D; ++c) g.velocity[c] = bed_.moves[w] != 0 ? plate[c] : 0;
-    g.records = bed_.records, g.spins = bed_.spins, g.forces = bed_.forces;
+    g.offset = plate[6 + w];
+    g.constants = wall_constants_of(b, w);
+    double memory[kMemory + 1];
+    for (int m = 0; m < kMemory; ++m) memory[m] = bed_.wall_memory[wall_memory_place(b, w, m)];
+    g.records = aligned(bed_.records), g.spins = bed_.spins, g.forces = aligned(bed_.forces);
     g.memory = memory;
     g.bead = &i;
     g.packets = 1;

@@ -10,6 +10,9 @@ namespace twincell::sim {
 /// Largest number of threads of a block. It bounds the registers of a thread.
 inline constexpr int kMostThreads = 512;
 
+/// Threads of a card that take one way through a program together.
+inline constexpr std::int32_t kWarp = 32;
+
 /// Largest number of stops of a launch.
 inline constexpr int kMostStops = 20;
 
@@ -42,6 +45,8 @@ struct DeviceBed {
   double* pair_forces;          ///< [pair][number], see storing_lanes.hpp
   std::int32_t* first_pair;     ///< [bead] of its pairs with beads of higher numbers
   std::int32_t* part_pairs;     ///< [kParts] numbers of pairs of parts of the beads
+  std::int32_t* touching;       ///< [pairs + beads] the contacts of a step, see BedKernel::contacts()
+  std::int8_t* was_touched;     ///< [pair] 0: it has no force, and its memory is 0
   double* wall_memory;          ///< [wall][number][bead]
   double* listed_at;            ///< [bead][axis] positions at the last build
 
@@ -51,18 +56,18 @@ struct DeviceBed {
   double* wall_constants;  ///< [wall][kind][constant]
   double* inv_mass;        ///< [bead][4], as in kernels.hpp
   double* turn;            ///< [bead]
-  double* normals;         ///< [wall][axis]
-  std::int32_t* moves;     ///< [wall] 1: the wall moves with the plate
-  double* drag;            ///< [bead] plate drag times mass
+
+  /// What goes to the machine with every launch: the arrays that follow, in this order.
+  std::byte* inputs;
+  double* normals;      ///< [wall][axis]
+  std::int32_t* moves;  ///< [wall] 1: the wall moves with the plate
+  double* drag;         ///< [bead] plate drag times mass
   /// Motion of the plate, one row for each step from the present one on: velocity of the moving walls (3
   /// numbers, in the order of a record), velocity of the cell for the drag (3), then the offset of each wall.
   double* plate;
 
-  // What a launch transfers: before it the inputs (normals to plate), after it the states (records to report)
-  // at its stops, between memory of the device and memory of the processor.
-  std::byte *inputs, *state;
-  std::byte* states;  ///< [stop] copies of the state that the kernel makes
-  std::byte *host_inputs, *host_states;
+  std::byte* state;   ///< of the bed: records to report
+  std::byte* states;  ///< [stop] copies of it that the kernel makes, and that come back with every launch
   std::int64_t input_words, state_words;  ///< of 8 bytes; those of one state
 
   double period[3], gravity[3];  ///< in the order of a record
@@ -82,6 +87,24 @@ struct DeviceBed {
 
 /// Bytes of a word of what is transferred.
 inline constexpr std::int64_t kWord = 8;
+
+inline std::size_t input_bytes(const DeviceBed& bed) {
+  return static_cast<std::size_t>(kWord * bed.input_words);
+}
+inline std::size_t state_bytes(const DeviceBed& bed) {
+  return static_cast<std::size_t>(kWord * bed.state_words * (bed.last_stop + 1));
+}
+/// Names another place for the inputs. They are not copied.
+inline void place_inputs(DeviceBed& bed, std::byte* to) {
+  const auto moved = [&](auto* array) {
+    return reinterpret_cast<decltype(array)>(to + (reinterpret_cast<std::byte*>(array) - bed.inputs));
+  };
+  bed.normals = moved(bed.normals);
+  bed.moves = moved(bed.moves);
+  bed.drag = moved(bed.drag);
+  bed.plate = moved(bed.plate);
+  bed.inputs = to;
+}
 
 /// Parts of the beads for running sums.
 inline constexpr std::int32_t kParts = 32;

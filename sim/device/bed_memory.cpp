@@ -54,6 +54,8 @@ BedParts place_bed(DeviceBed& bed, const BedSizes& sizes, std::byte* base) {
   parts.contacts = arrays.used();
   arrays.next(bed.listed_at, n * axes);
   arrays.next(bed.pair_forces, pairs * (flat ? kContactForce<2> : kContactForce<3>));
+  arrays.next(bed.touching, pairs + n);
+  arrays.next(bed.was_touched, pairs);
   arrays.next(bed.first_pair, n);
   arrays.next(bed.part_pairs, kParts);
   arrays.next(bed.kind, n);
@@ -65,16 +67,13 @@ BedParts place_bed(DeviceBed& bed, const BedSizes& sizes, std::byte* base) {
   arrays.next(bed.normals, sizes.walls * 3);
   arrays.next(bed.moves, sizes.walls);
   arrays.next(bed.drag, n);
-  parts.surroundings = arrays.used();
   arrays.next(bed.plate, static_cast<std::size_t>((kStepsPerLaunch + 1) * plate_row(bed.walls)));
-  parts.work = arrays.used();
+  parts.all = arrays.used();
   bed.state_words = static_cast<std::int64_t>(parts.state) / kWord;
   if (base != nullptr) {
     bed.state = base;
     bed.inputs = base + parts.constants;
-    bed.states = base + parts.work;
   }
-  parts.all = parts.work + kMostStops * parts.state;
   return parts;
 }
 

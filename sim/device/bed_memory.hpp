@@ -18,19 +18,16 @@ struct BedSizes {
   std::size_t constants = 0, memory = 0;  ///< numbers per kind of contact, and remembered by a contact
 };
 
-/// Ends of the parts of the memory, bytes. Each part is transferred at once.
+/// Ends of the parts of the memory, bytes.
 struct BedParts {
-  std::size_t state;     ///< records, spins, forces, report: read after each launch
-  std::size_t contacts;  ///< lists and memory: read for checkpoints
-  std::size_t constants;
-  std::size_t
-      surroundings;  ///< walls, drag: written, with the rows of the plate's motion, before each launch
-  std::size_t work;  ///< what is also kept as an image on the processor
-  std::size_t all;   ///< with the states at the stops of a launch
+  std::size_t state;      ///< records, spins, forces, report: comes back with every launch
+  std::size_t contacts;   ///< lists and memory: read for checkpoints
+  std::size_t constants;  ///< so far the bed stays on the machine
+  std::size_t all;        ///< with the inputs, which go to the machine with every launch
 };
 
 /// Sets the pointers of a bed whose memory begins at `base`, which is not accessed; null: only the ends of
-/// the parts.
+/// the parts. `states` is left as it is.
 BedParts place_bed(DeviceBed& bed, const BedSizes& sizes, std::byte* base);
 
 }  // namespace twincell::sim

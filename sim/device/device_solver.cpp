@@ -118,8 +118,7 @@ class DeviceSolver : public Solver {
 
   void release() {
     if (memory_ != nullptr) batcher_.executor().release(memory_);
-    if (transfers_ != nullptr) batcher_.executor().release_host(transfers_);
-    memory_ = transfers_ = nullptr;
+    memory_ = nullptr;
   }
 
   // --- contact memory ---
@@ -185,13 +184,13 @@ class DeviceSolver : public Solver {
     sizes.memory = remembered_;
     require_table(sizes);
     parts_ = place_bed(here_, sizes, nullptr);
-    image_.assign(parts_.work / sizeof(double), 0.0);
+    image_.assign(parts_.all / sizeof(double), 0.0);
+    states_.resize(kMostStops * parts_.state);
     place_bed(here_, sizes, image());
-    memory_ = batcher_.executor().allocate(parts_.all);
-    transfers_ =
-        batcher_.executor().allocate_host(kMostStops * parts_.state + parts_.work - parts_.constants);
+    memory_ = batcher_.executor().allocate(parts_.constants);
     place_bed(there_, sizes, memory_);
-    there_.host_states = transfers_, there_.host_inputs = transfers_ + kMostStops * parts_.state;
+    place_inputs(there_, here_.inputs);
+    there_.states = states_.data();
     there_.skin = skin;
     there_.fresh = true;
 
@@ -334,9 +333,8 @@ class DeviceSolver : public Solver {
   /// Advances the bed to its last stop. s.step is changed and restored.
   void launch(System& s) {
     there_.step = s.step;
-    const Size bytes = set_plate_motion(s, there_.stops[there_.last_stop]);
-    std::memcpy(there_.host_inputs, image() + parts_.constants, bytes);
-    there_.input_words = static_cast<std::int64_t>(bytes) / kWord;
+    there_.input_words =
+        static_cast<std::int64_t>(set_plate_motion(s, there_.stops[there_.last_stop])) / kWord;
     batcher_.advance(kernel_, there_);
     there_.fresh = false;
     there_.known = true;
@@ -344,17 +342,17 @@ class DeviceSolver : public Solver {
   [[nodiscard]] BedReport report_at(Size stop) const {
     BedReport report;
     const auto place = reinterpret_cast<const std::byte*>(here_.report) - image();
-    std::memcpy(&report, there_.host_states + parts_.state * stop + place, sizeof report);
+    std::memcpy(&report, states_.data() + parts_.state * stop + place, sizeof report);
     return report;
   }
   /// Fetches the state at a stop.
   void fetch(Size stop) {
-    std::memcpy(image(), there_.host_states + parts_.state * stop, parts_.state);
+    std::memcpy(image(), states_.data() + parts_.state * stop, parts_.state);
     transfer_beads(
         [](double* in_image, double* packed, Size count) { std::copy_n(in_image, count, packed); });
   }
   /// Tabulates the motion of the plate, from the present step on, with the functions and so the bits of the
-  /// other solvers. \returns the bytes of the surroundings and the table
+  /// other solvers. \returns the bytes of the inputs
   Size set_plate_motion(System& s, std::int64_t steps) {
     const bool full = plan_.key.velocity == Velocity::full_step;
     const std::int64_t begin = s.step;
@@ -371,7 +369,7 @@ class DeviceSolver : public Solver {
       before = now;
     }
     s.step = begin;
-    return static_cast<Size>(reinterpret_cast<const std::byte*>(row) - (image() + parts_.constants));
+    return static_cast<Size>(reinterpret_cast<const std::byte*>(row) - here_.inputs);
   }
 
   Plan plan_;
@@ -381,10 +379,10 @@ class DeviceSolver : public Solver {
   Size remembered_;
   PackedBeads beads_;
   std::vector<std::int32_t> order_;
-  std::byte* memory_ = nullptr;     ///< of the device; null: the bed is not there
-  std::byte* transfers_ = nullptr;  ///< of the processor, for what every launch transfers
+  std::byte* memory_ = nullptr;  ///< of the device; null: the bed is not there
   BedParts parts_{};
-  mutable std::vector<double> image_;  ///< copy of that memory
+  mutable std::vector<double> image_;  ///< copy of that memory, followed by the inputs
+  std::vector<std::byte> states_;      ///< at the stops of the last launch
   DeviceBed here_{}, there_{};         ///< the bed in the image, and in memory of the device
   ContactMemories kept_;               ///< contact memory while the bed is not on the device
   std::int64_t builds_ = 0;            ///< before the last arrange()

@@ -13,20 +13,6 @@
 
 namespace twincell::sim {
 
-/// A transfer of a launch.
-struct Transfer {
-  std::byte* to;
-  const std::byte* from;
-  std::size_t bytes;
-};
-inline Transfer inputs_of(const DeviceBed& bed) {
-  return {bed.inputs, bed.host_inputs, static_cast<std::size_t>(kWord * bed.input_words)};
-}
-inline Transfer states_of(const DeviceBed& bed) {
-  return {bed.host_states, bed.states,
-          static_cast<std::size_t>(kWord * bed.state_words * (bed.last_stop + 1))};
-}
-
 /// All functions may be called from any thread. A failure of the machine is an Error, not the RunError of
 /// a bed: it says nothing about the scene.
 class Executor {
@@ -37,15 +23,12 @@ class Executor {
   virtual void release(std::byte* memory) = 0;
   virtual void write(std::byte* to, const void* from, std::size_t bytes) = 0;
   virtual void read(void* to, const std::byte* from, std::size_t bytes) = 0;
-  /// Memory of the processor from and to which the machine transfers fast; aligned alike.
-  [[nodiscard]] virtual std::byte* allocate_host(std::size_t bytes) = 0;
-  virtual void release_host(std::byte* memory) = 0;
   /// Number of threads that may be in advance() at once.
   [[nodiscard]] virtual int launches_at_once() const { return 1; }
   /// Number of beds of a launch at most.
   [[nodiscard]] virtual std::size_t beds_per_launch() const { return SIZE_MAX; }
-  /// Transfers the inputs of each bed, advances it, in one launch, and transfers its states. The pointers in
-  /// the beds are into memory of the machine, those to host memory are of allocate_host().
+  /// Advances each bed, in one launch. Its inputs and states are in memory of the processor, all other
+  /// pointers are into memory of the machine.
   virtual void advance(const DeviceKernel& kernel, const std::vector<DeviceBed>& beds) = 0;
   /// "one thread a bed, on the processor", for example.
   [[nodiscard]] virtual std::string description() const = 0;
@@ -57,7 +40,7 @@ struct HostThreads {
   bool backwards = false;  ///< the last thread goes first
 };
 
-/// Runs a device kernel on the processor, without the transfers.
+/// Runs a device kernel on the processor.
 void run_on_host(const DeviceKernel& kernel, const DeviceBed& bed, const HostThreads& threads = {});
 
 /// Runs the device kernels on the processor, one bed after the other.

@@ -30,6 +30,16 @@ class HostSpace {
     return found;
   }
   template <class F>
+  SortedCounts sort(std::int32_t count, std::int32_t* list, F f) const {
+    SortedCounts n{};
+    for_each(count, [&](std::int32_t i) {
+      const Sorted to = f(i);
+      if (to == Sorted::front) list[n.front++] = i;
+      if (to == Sorted::back) list[count - 1 - n.back++] = i;
+    });
+    return n;
+  }
+  template <class F>
   void once(F f) const {
     f();
   }
@@ -63,23 +73,15 @@ class HostExecutor : public Executor {
     return static_cast<std::byte*>(::operator new(bytes, kAlignment));
   }
   void release(std::byte* memory) override { ::operator delete(memory, kAlignment); }
-  [[nodiscard]] std::byte* allocate_host(std::size_t bytes) override { return allocate(bytes); }
-  void release_host(std::byte* memory) override { release(memory); }
   [[nodiscard]] int launches_at_once() const override { return 1 << 20; }  // kernels share nothing
   void write(std::byte* to, const void* from, std::size_t bytes) override { std::memcpy(to, from, bytes); }
   void read(void* to, const std::byte* from, std::size_t bytes) override { std::memcpy(to, from, bytes); }
   void advance(const DeviceKernel& kernel, const std::vector<DeviceBed>& beds) override {
-    for (const DeviceBed& bed : beds) {
-      transfer(inputs_of(bed));
-      run_on_host(kernel, bed, threads_);
-      transfer(states_of(bed));
-    }
+    for (const DeviceBed& bed : beds) run_on_host(kernel, bed, threads_);
   }
   [[nodiscard]] std::string description() const override { return "device kernel on the processor"; }
 
  private:
-  static void transfer(const Transfer& t) { std::memcpy(t.to, t.from, t.bytes); }
-
   HostThreads threads_;
 };
 

@@ -40,6 +40,10 @@ double pair_kernel(const PairArgs& args) {
     std::int64_t packet;
     const double* constants;
   } live[kStage];
+  // With one packet at a time this is 0 to the compiler, which then keeps the numbers in registers.
+  const auto place = [](int n) TWINCELL_LANES { return kStage == 1 ? 0 : n; };
+  if constexpr (kStage == 1)  // the compiler does not see that they are written before they are read
+    for (double& number : stage) number = 0;
   const V dt(p.dt), quantum(p.quantum);
   V largest(0.0);
   for (std::int64_t begin = 0; begin < p.packets; begin += kStage) {
@@ -64,7 +68,7 @@ double pair_kernel(const PairArgs& args) {
         for (int m = 0; m < kMemory; ++m) Lanes::store(V(0.0), kept + W * m);
         continue;
       }
-      double* to = stage + W * kKept * n;
+      double* to = stage + W * kKept * place(n);
       for (int c = 0; c < D; ++c) {
         Lanes::store(d[c], to + W * c);
         Lanes::store(v[c], to + W * (D + c));
@@ -78,12 +82,12 @@ double pair_kernel(const PairArgs& args) {
                            s_j[m] * Lanes::load(constants + W * constant::kInvRadiusJ),
                        to + W * (kRollAt + m));
       }
-      live[n++] = {k, constants};
+      live[place(n++)] = {k, constants};
     }
     // Compute: evaluate the laws for the packets that may have a contact.
     for (int at = 0; at < n; ++at) {
-      double* numbers = stage + W * kKept * at;
-      const auto [k, constants] = live[at];
+      double* numbers = stage + W * kKept * place(at);
+      const auto [k, constants] = live[place(at)];
       double* kept = p.memory + W * kMemory * k;
       V c[kCount], d[D];
       for (int m = 0; m < kCount; ++m) c[m] = Lanes::load(constants + W * m);
@@ -116,8 +120,8 @@ double pair_kernel(const PairArgs& args) {
     }
     // Scatter: add the rounded forces to the beads.
     for (int at = 0; at < n; ++at) {
-      const std::int64_t k = live[at].packet;
-      const double* numbers = stage + W * kKept * at;
+      const std::int64_t k = live[place(at)].packet;
+      const double* numbers = stage + W * kKept * place(at);
       const auto share = [&](int m) TWINCELL_LANES { return rounded(Lanes::load(numbers + W * m), quantum); };
       V f[D], q_i[K], q_j[K];
       for (int m = 0; m < D; ++m) f[m] = share(m);

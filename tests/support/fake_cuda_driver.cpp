@@ -132,12 +132,12 @@ int cuMemFree_v2(unsigned long long memory) {
 }
 int cuMemHostAlloc(void** memory, std::size_t bytes, unsigned) {
   if (!has_context) return no_context;
-  *memory = card().allocate_host(bytes);
+  *memory = card().allocate(bytes);
   return success;
 }
 int cuMemFreeHost(void* memory) {
   if (!has_context) return no_context;
-  card().release_host(static_cast<std::byte*>(memory));
+  card().release(static_cast<std::byte*>(memory));
   return success;
 }
 int cuStreamCreate(void** stream, unsigned flags) {

@@ -26,8 +26,6 @@ class Watched : public Executor {
   explicit Watched(Before before) : before_(std::move(before)) {}
   [[nodiscard]] std::byte* allocate(std::size_t bytes) override { return host_->allocate(bytes); }
   void release(std::byte* memory) override { host_->release(memory); }
-  [[nodiscard]] std::byte* allocate_host(std::size_t n) override { return host_->allocate_host(n); }
-  void release_host(std::byte* memory) override { host_->release_host(memory); }
   void write(std::byte* to, const void* from, std::size_t n) override { host_->write(to, from, n); }
   void read(void* to, const std::byte* from, std::size_t n) override { host_->read(to, from, n); }
   void advance(const DeviceKernel& kernel, const std::vector<DeviceBed>& beds) override {

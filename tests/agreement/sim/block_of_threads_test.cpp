@@ -23,6 +23,7 @@ struct ThreadSpace {
   std::int32_t thread;
   std::barrier<>* barrier;
   std::atomic<bool>* found;
+  std::atomic<std::int32_t>*front, *back;
 
   template <class F>
   void for_each(std::int32_t count, F f) const {
@@ -41,6 +42,19 @@ struct ThreadSpace {
     return answer;
   }
   template <class F>
+  SortedCounts sort(std::int32_t count, std::int32_t* list, F f) const {
+    for_each(count, [&](std::int32_t i) {
+      const Sorted to = f(i);
+      if (to == Sorted::front) list[(*front)++] = i;
+      if (to == Sorted::back) list[count - 1 - (*back)++] = i;
+    });
+    const SortedCounts n{*front, *back};
+    barrier->arrive_and_wait();
+    if (thread == 0) *front = *back = 0;
+    barrier->arrive_and_wait();
+    return n;
+  }
+  template <class F>
   void once(F f) const {
     if (thread == 0) f();
     barrier->arrive_and_wait();
@@ -53,30 +67,26 @@ class BlockExecutor : public Executor {
   using Laws = LawSet<LinearSpringDashpot, SpringSlider, NoRolling>;
   [[nodiscard]] std::byte* allocate(std::size_t bytes) override { return host_->allocate(bytes); }
   void release(std::byte* memory) override { host_->release(memory); }
-  [[nodiscard]] std::byte* allocate_host(std::size_t n) override { return host_->allocate_host(n); }
-  void release_host(std::byte* memory) override { host_->release_host(memory); }
   void write(std::byte* to, const void* from, std::size_t n) override { host_->write(to, from, n); }
   void read(void* to, const std::byte* from, std::size_t n) override { host_->read(to, from, n); }
   void advance(const DeviceKernel& kernel, const std::vector<DeviceBed>& beds) override {
     ASSERT_EQ(kernel.name, "linear_spring_2d_full");
     for (const DeviceBed& bed : beds) {
-      transfer(inputs_of(bed));
       std::barrier<> barrier(kThreads);
       std::atomic<bool> found = false;
+      std::atomic<std::int32_t> front = 0, back = 0;
       std::vector<std::thread> block;
       for (std::int32_t t = 0; t < kThreads; ++t)
         block.emplace_back([&, t] {
-          advance_bed<ThreadSpace, Laws, 2, Velocity::full_step>(ThreadSpace{t, &barrier, &found}, bed);
+          advance_bed<ThreadSpace, Laws, 2, Velocity::full_step>(
+              ThreadSpace{t, &barrier, &found, &front, &back}, bed);
         });
       for (std::thread& thread : block) thread.join();
-      transfer(states_of(bed));
     }
   }
   [[nodiscard]] std::string description() const override { return "a block of threads"; }
 
  private:
-  static void transfer(const Transfer& t) { std::memcpy(t.to, t.from, t.bytes); }
-
   std::unique_ptr<Executor> host_ = make_host_executor();
 };
 
