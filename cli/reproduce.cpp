@@ -285,7 +285,7 @@ void run_all(const ReproduceOptions& options, const Common& common) {
       nlohmann::json& n = counts[t["verdict"].get<std::string>()];
       n = n.is_null() ? 1 : n.get<int>() + 1;
     }
-    documents.push_back({what.name, json_text(document)});
+    documents.push_back({what.name, json_text(document), what.judges_again});
     write_page();  // after every figure, so that an interrupted call leaves a page
   }
   std::string text;

@@ -82,7 +82,8 @@ Reproducible p1_truncate() {
           .shared_runs = kStrengthSweepRuns,
           .judges_stored = true,
           .on_device = true,
-          .worth = 3};
+          .worth = 3,
+          .judges_again = true};
 }
 
 }  // namespace twincell::reproduce

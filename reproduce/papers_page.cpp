@@ -66,8 +66,9 @@ std::string papers_page(const std::vector<Document>& documents, const std::strin
       "| verdict | meaning |\n|---|---|\n";
   for (const auto& verdict : kVerdicts) s += fmt::format("| {} | {} |\n", verdict.word, verdict.help);
   s += "\nStatements about an order use the interval of the difference. A statement about a count or about "
-       "bits has no interval.\nEach target is counted once. The cost is the processor time of the calls that "
-       "filled the folder of the figure; \"–\" means\nthat it was not recorded. Figures that share runs "
+       "bits has no interval.\nEach target is counted once: entries that judge the targets of other figures "
+       "again, under other assumptions, are not in\nthe sum. The cost is the processor time of the calls that "
+       "filled the folder of the figure; \"–\" means that it was not\nrecorded. Figures that share runs "
        "count them once, with the figure that computed them.\n\n## Summary\n\n| |";
   for (const auto& verdict : kVerdicts) s += fmt::format(" {} |", verdict.word);
   s += " core-minutes |\n|---|";
@@ -76,8 +77,10 @@ std::string papers_page(const std::vector<Document>& documents, const std::strin
   std::map<std::string, int> sum;
   for (std::size_t k = 0; k < parsed.size(); ++k) {
     const auto counts = counts_of(parsed[k]);
-    for (const auto& [word, n] : counts) sum[word] += n;
-    s += row_of_counts(fmt::format("`{}`", documents[k].name), counts, cost_of(parsed[k]));
+    const bool counts_here = !documents[k].judges_again;
+    for (const auto& [word, n] : counts) sum[word] += counts_here ? n : 0;
+    s += row_of_counts(fmt::format("`{}`{}", documents[k].name, counts_here ? "" : ", not in the sum"),
+                       counts, cost_of(parsed[k]));
   }
   s += row_of_counts("all", sum, "");
   for (const Paper& paper : kPapers) {

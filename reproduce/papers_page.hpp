@@ -9,8 +9,9 @@ namespace twincell::reproduce {
 
 /// The result of one figure or table, as `reproduce NAME` writes it to NAME.json.
 struct Document {
-  std::string name;  ///< "p1-fig3"
-  std::string text;  ///< JSON with title, targets, runs and core_minutes
+  std::string name;           ///< "p1-fig3"
+  std::string text;           ///< JSON with title, targets, runs and core_minutes
+  bool judges_again = false;  ///< Reproducible::judges_again: shown, but not in the sum
 };
 
 /// The page as Markdown: a table of the verdicts per figure, and for each figure a table with the paper's

@@ -69,7 +69,9 @@ struct Reproducible {
   double worth = 1;              ///< share of the time of `reproduce --all`, relative to the others
   std::string runs_like = {};    ///< entry whose runs this one needs: `--all` gives it the same budget for
                                  ///< them, and no time of its own
-  std::string same_as = {};      ///< entry with the same targets: `--all` leaves this one out
+  bool judges_again = false;  ///< its targets are those of other figures, under other assumptions: papers.md
+                              ///< does not count them twice
+  std::string same_as = {};   ///< entry with the same targets: `--all` leaves this one out
 };
 /// All reproductions. To add one: its file with its test, and its word in the list of list.cpp.
 const std::vector<Reproducible>& list();

@@ -45,5 +45,13 @@ TEST(PapersPage, HoldsEveryTargetOnceAndCountsTheVerdicts) {
   }
 }
 
+TEST(PapersPage, CountsNoTargetTwice) {
+  const std::string page =
+      papers_page({{"p1-fig4", kOne}, {"p1-truncate", kOne, true}}, "twincell reproduce --all");
+  const auto has = [&](const std::string& text) { return page.find(text) != std::string::npos; };
+  EXPECT_TRUE(has("| `p1-truncate`, not in the sum | 1 | 1 | 0 | 0 | 1 |")) << page;
+  EXPECT_TRUE(has("| all | 1 | 1 | 0 | 0 | 1 |  |\n")) << page;
+}
+
 }  // namespace
 }  // namespace twincell::reproduce
