@@ -235,12 +235,20 @@ void run_numbers(const NumberFlags& o, const Common& common) {
   }
   const nlohmann::json d = {{"m_eff", o.m_eff}, {"restitution", e},     {"contact_time", finite(t_c)},
                             {"k_n", s.k_n},     {"gamma_n", s.gamma_n}, {"c_n", s.c_n}};
+  std::string text;
+  if (!std::isfinite(t_c))
+    text = fmt::format(
+        "The contact is overdamped, because gamma_n is at least 2 sqrt(k_n/m_eff) = {:.8g}/t0: beads that "
+        "touch "
+        "never separate, so there is no t_c.\n",
+        2 * std::sqrt(s.k_n / o.m_eff));
   print_result(
       common, d,
-      fmt::format(
-          "e_n = {:.8g}, t_c = {:.8g} t0  <->  k_n = {:.8g} m g/sigma, gamma_n = {:.8g}/t0, c_n = {:.8g} "
-          "m/t0  (m_eff = {:g})\n",
-          e, t_c, s.k_n, s.gamma_n, s.c_n, o.m_eff));
+      text +
+          fmt::format(
+              "e_n = {:.8g}, t_c = {:.8g} t0  <->  k_n = {:.8g} m g/sigma, gamma_n = {:.8g}/t0, c_n = {:.8g} "
+              "m/t0  (m_eff = {:g})\n",
+              e, t_c, s.k_n, s.gamma_n, s.c_n, o.m_eff));
 }
 
 }  // namespace

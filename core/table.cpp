@@ -10,6 +10,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/table_text.hpp"
 
@@ -67,8 +68,8 @@ Table read_table(const std::filesystem::path& path) {
       continue;
     }
     if (fields.size() != table.names.size())
-      throw InputError(
-          where, fmt::format("has {} fields; the header line has {}", fields.size(), table.names.size()));
+      throw InputError(where, fmt::format("has {}; the header line has {}", counted(fields.size(), "field"),
+                                          table.names.size()));
     for (std::size_t c = 0; c < fields.size(); ++c) {
       const auto number = number_of(fields[c]);
       if (!number) table.texts.try_emplace(c, Table::Text{line_number, std::string(fields[c].substr(0, 60))});

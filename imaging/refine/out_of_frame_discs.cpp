@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 namespace twincell::imaging {
 
@@ -14,7 +15,8 @@ constexpr double kWitness = 0.1;    // mean residual of five border pixels that 
 constexpr double kDarkness = 0.35;  // smallest darkness of a disc, part of which its neighbours absorbed
 constexpr double kClear = 6;        // smallest darkness in standard deviations
 
-/// Residuals and weights along a border of the frame, by row from the border.
+/// Residuals and weights along a border of the frame, by row from the border. Beyond both ends there are
+/// `half` places without weight.
 struct Border {
   using Line = std::vector<double>;
   std::array<Line, kRows> left, weight;
@@ -32,10 +34,12 @@ struct Side {
   }
 };
 
-Border border_of(const RingArgs& args, const Side& side) {
+Border border_of(const RingArgs& args, const Side& side, int half) {
   Border border;
   for (int row = 0; row < kRows; ++row) {
     const auto k = static_cast<std::size_t>(row);
+    border.left[k].assign(static_cast<std::size_t>(half), 0);
+    border.weight[k].assign(static_cast<std::size_t>(half), 0);
     for (int t = 0; t < side.length; ++t) {
       const cv::Point at = side.at(t, row);
       const auto d = static_cast<double>((*args.picture)(at)), model = static_cast<double>((*args.model)(at));
@@ -44,13 +48,16 @@ Border border_of(const RingArgs& args, const Side& side) {
       border.weight[k].push_back(
           seen ? 1 / (args.dark_variance + args.light_variance * std::clamp(1 - model, 0.0, 1.0)) : 0);
     }
+    border.left[k].resize(border.left[k].size() + static_cast<std::size_t>(half), 0);
+    border.weight[k].resize(border.weight[k].size() + static_cast<std::size_t>(half), 0);
   }
   return border;
 }
 
 /// P of a disc whose centre is `depth` pixels outside the first row, in the rows and columns near it.
-std::array<Border::Line, kRows> shape_of(double depth, double radius, double blur, int half) {
-  std::array<Border::Line, kRows> shape;
+using Shape = std::array<Border::Line, kRows>;
+Shape shape_of(double depth, double radius, double blur, int half) {
+  Shape shape;
   for (int row = 0; row < kRows; ++row)
     for (int j = -half; j <= half; ++j)
       shape[static_cast<std::size_t>(row)].push_back(
@@ -58,39 +65,71 @@ std::array<Border::Line, kRows> shape_of(double depth, double radius, double blu
   return shape;
 }
 
+/// Fits the darkness of a disc at each of several consecutive places along a border: the darkness is by / of,
+/// its weight of. The innermost loop is over the places, so that the compiler computes several at once.
+struct Darkness {
+  Border::Line by, of;
+
+  void fit(const Border& border, const Shape& shape, std::size_t first, std::size_t places) {
+    by.assign(places, 0);
+    of.assign(places, 0);
+    double *const sums = by.data(), *const weights = of.data();
+    for (std::size_t k = 0; k < kRows; ++k)
+      for (std::size_t j = 0; j < shape[k].size(); ++j) {
+        const double p = shape[k][j];
+        const double *left = border.left[k].data() + first + j, *weight = border.weight[k].data() + first + j;
+        for (std::size_t t = 0; t < places; ++t) {
+          const double wp = weight[t] * p;
+          sums[t] += wp * left[t];
+          weights[t] += wp * p;
+        }
+      }
+  }
+};
+
 }  // namespace
 
 std::vector<Proposal> out_of_frame_discs(const RingArgs& args, double radius_px, double deepest_px) {
   const double blur = std::sqrt(args.blur.variance);
   const int half = cvCeil(radius_px), width = args.picture->cols - kSpareColumns, height = args.picture->rows;
-  std::vector<std::array<Border::Line, kRows>> shapes;
+  std::vector<Shape> shapes;
   for (int d = 1; d <= cvFloor(deepest_px * kDepthsPerPixel); ++d)
     shapes.push_back(shape_of(static_cast<double>(d) / kDepthsPerPixel, radius_px, blur, half));
 
   std::vector<Proposal> found;
+  Darkness dark;
   for (const Side& side : {Side{false, false, width, height}, Side{false, true, width, height},
                            Side{true, false, height, width}, Side{true, true, height, width}}) {
     if (side.deep < kRows) continue;
-    const Border border = border_of(args, side);
-    for (int t = 2; t + 2 < side.length; ++t) {
-      const double* near = &border.left[0][static_cast<std::size_t>(t - 2)];
-      if (near[0] + near[1] + near[2] + near[3] + near[4] < 5 * kWitness) continue;
-      Proposal best;
-      for (std::size_t d = 0; d < shapes.size(); ++d) {
-        double by = 0, of = 0;
-        for (std::size_t k = 0; k < kRows; ++k)
-          for (int j = std::max(-half, -t); j <= std::min(half, side.length - 1 - t); ++j) {
-            const auto at = static_cast<std::size_t>(t + j);
-            const double p = shapes[d][k][static_cast<std::size_t>(j + half)], wp = border.weight[k][at] * p;
-            by += wp * border.left[k][at];
-            of += wp * p;
-          }
-        const double clear = of > 0 ? by / std::sqrt(of) : 0;
-        if (by < kDarkness * of || clear <= std::max(kClear, best.score)) continue;
-        const cv::Point2d centre = side.at(t, -static_cast<double>(d + 1) / kDepthsPerPixel);
-        best = {centre.x, centre.y, clear};
+    const Border border = border_of(args, side, half);
+    const auto is_dark = [&](int t) {
+      if (t + 2 >= side.length) return false;
+      const double* near = &border.left[0][static_cast<std::size_t>(half + t - 2)];
+      return near[0] + near[1] + near[2] + near[3] + near[4] >= 5 * kWitness;
+    };
+    for (int begin = 2; begin + 2 < side.length;) {
+      if (!is_dark(begin)) {
+        ++begin;
+        continue;
       }
-      if (best.score > 0) found.push_back(best);
+      int end = begin;
+      while (is_dark(end)) ++end;
+      const auto places = static_cast<std::size_t>(end - begin);
+      std::vector<Proposal> best(places);
+      for (std::size_t d = 0; d < shapes.size(); ++d) {
+        dark.fit(border, shapes[d], static_cast<std::size_t>(begin), places);
+        for (std::size_t t = 0; t < places; ++t) {
+          const double by = dark.by[t], of = dark.of[t];
+          const double clear = of > 0 ? by / std::sqrt(of) : 0;
+          if (by < kDarkness * of || clear <= std::max(kClear, best[t].score)) continue;
+          const cv::Point2d centre =
+              side.at(begin + static_cast<int>(t), -static_cast<double>(d + 1) / kDepthsPerPixel);
+          best[t] = {centre.x, centre.y, clear};
+        }
+      }
+      std::copy_if(best.begin(), best.end(), std::back_inserter(found),
+                   [](const Proposal& p) { return p.score > 0; });
+      begin = end;
     }
   }
   std::stable_sort(found.begin(), found.end(),

@@ -263,6 +263,19 @@ TEST(Calibrate, NumbersGoThereAndBack) {
   EXPECT_NEAR(back["contact_time"].get<double>(), 0.002, 1e-9);
 }
 
+TEST(Calibrate, AnOverdampedContactHasNoContactTime) {
+  // Damping at and beyond 2 sqrt(k_n / m_eff) = 894.43 for k_n = 1e5, m_eff = 0.5.
+  const std::vector<std::string> words{"calibrate", "contacts", "numbers", "--k-n", "1e5", "--gamma-n"};
+  const auto with = [&](const std::string& gamma_n) {
+    std::vector<std::string> all = words;
+    all.push_back(gamma_n);
+    return run_program(all).out;
+  };
+  EXPECT_NE(with("900").find("overdamped, because gamma_n is at least 2 sqrt(k_n/m_eff) = 894.42719/t0"),
+            std::string::npos);
+  EXPECT_EQ(with("880").find("overdamped"), std::string::npos);
+}
+
 TEST(Calibrate, AccuracyCostsFrames) {
   const TemporaryFolder folder;
   const nlohmann::json d = run_json({"cost", "calibration", "--quick", "-o", folder / "cost"});
