@@ -54,7 +54,7 @@ std::string advice_on_missing(const std::string& verb, const std::string& word) 
     return fmt::format("did you mean '{}'?", one_line(near));
   const std::string extension = fs::path(word).extension().string();
   if (extension == ".toml" && is_one_of(verb, kReadCells))
-    return fmt::format("twincell new STACK -o {} writes a cell file", shell_word(word));
+    return fmt::format("twincell new STACK -o {} writes a cell file of this name", shell_word(word));
   if (extension == ".h5" && is_one_of(verb, kReadTrajectories))
     return "twincell track and twincell simulate write trajectories";
   return {};

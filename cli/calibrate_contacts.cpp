@@ -16,6 +16,7 @@
 #include "cli/calibrate.hpp"
 #include "cli/numbers.hpp"
 #include "cli/stack_info.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
 #include "core/table.hpp"
@@ -68,6 +69,19 @@ std::vector<calibration::BounceSample> samples_of(const BounceFlags& o, std::opt
   return samples;
 }
 
+/// In a trajectory g is the unit of acceleration.
+void require_unit_gravity(const std::string& source, const calibration::BounceFit& fit) {
+  constexpr double kClear = 5, kFar = 0.05;  // standard errors; of g
+  const double off = std::abs(fit.gravity - 1);
+  if (off < kFar || off < kClear * fit.gravity_error) return;
+  throw InputError(
+      {.file = source, .key = {}},
+      fmt::format("the bead does not fly freely between its impacts: the best gravity is {:.4g} "
+                  "+- {:.1g}, where it is 1 in a trajectory; it may touch other beads (--bead selects "
+                  "one), or the scale or the frame rate is wrong.",
+                  fit.gravity, fit.gravity_error));
+}
+
 void run_bounce(const BounceFlags& o, const Common& common) {
   std::optional<Drive> drive;
   const std::vector<calibration::BounceSample> samples = samples_of(o, drive);
@@ -96,12 +110,13 @@ void run_bounce(const BounceFlags& o, const Common& common) {
   } catch (const InputError& e) {
     throw InputError({.file = o.source, .key = {}}, e.what());
   }
+  if (is_trajectory(o.source) && !o.gravity) require_unit_gravity(o.source, fit);
   CalibrationResult out;
   out.notes = fit.notes;
   out.measured.push_back({.name = "contact.wall.restitution",
                           .value = {fit.restitution},
                           .standard_error = {fit.restitution_error},
-                          .method = fmt::format("{} impacts of a bouncing bead", fit.impacts.size()),
+                          .method = counted(fit.impacts.size(), "impact") + " of a bouncing bead",
                           .data = data_hash(o.source)});
   nlohmann::json& d = out.document;
   d["source"] = o.source;
@@ -112,8 +127,8 @@ void run_bounce(const BounceFlags& o, const Common& common) {
   d["gravity"] = {
       {"value", fit.gravity}, {"standard_error", finite(fit.gravity_error)}, {"fitted", !o.gravity}};
   d["drag"] = {{"value", fit.drag}, {"standard_error", finite(fit.drag_error)}, {"fitted", !o.no_drag}};
-  out.text = fmt::format("{} samples in {} flights, {} outliers, rms {:.3g}\n", fit.samples, fit.flights,
-                         fit.outliers, fit.rms);
+  out.text = fmt::format("{} in {}, {}, rms {:.3g}\n", counted(fit.samples, "sample"),
+                         counted(fit.flights, "flight"), counted(fit.outliers, "outlier"), fit.rms);
   out.text += o.gravity ? fmt::format("gravity: {:g}, as given\n", fit.gravity)
                         : fmt::format("gravity: {:.6g} +- {:.2g}\n", fit.gravity, fit.gravity_error);
   if (!o.no_drag)
@@ -191,8 +206,8 @@ void run_collisions(const CollisionFlags& o, const Common& common) {
   d["spins"] = found.spins;
   d["stride"] = found.stride;
   if (!found.spins) out.notes.emplace_back("the trajectory has no spins, so friction cannot be measured");
-  out.text = fmt::format("{} pairs collided between two frames, {} with a third body left out, {} outliers\n",
-                         found.pairs, found.crowded, fit.outliers);
+  out.text = fmt::format("{} collided between two frames, {} with a third body left out, {}\n",
+                         counted(found.pairs, "pair"), found.crowded, counted(fit.outliers, "outlier"));
   if (found.stride > 1)
     out.text += fmt::format(
         "every {}th frame is used: collisions last longer than the interval between frames\n", found.stride);
@@ -227,6 +242,10 @@ void run_numbers(const NumberFlags& o, const Common& common) {
     e = *o.restitution;
     t_c = *o.contact_time;
     s = calibration::spring_of(e, t_c, o.m_eff);
+    if (!std::isfinite(s.k_n) || !(s.k_n > 0) || !std::isfinite(s.c_n))
+      throw ConfigError(
+          {.file = {}, .key = "--contact-time"},
+          fmt::format("is {:g}; with --restitution {:g} no stiffness that can be computed follows.", t_c, e));
   } else {
     const sim::LinearCollision c(*o.k_n, *o.gamma_n * o.m_eff, o.m_eff);
     e = c.restitution();

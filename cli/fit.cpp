@@ -11,6 +11,7 @@
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
 
@@ -29,8 +30,8 @@ Product fit_folder() {
 
 std::string text_of(const calibration::CurveFit& fit) {
   const calibration::FitReport& report = fit.fit;
-  std::string text = fmt::format("{}: {}   ({})\n{} points used", fit.law->name, fit.law->formula,
-                                 fit.law->source, fit.n_used);
+  std::string text = fmt::format("{}: {}   ({})\n{} used", fit.law->name, fit.law->formula, fit.law->source,
+                                 counted(fit.n_used, "point"));
   if (fit.n_outside > 0) text += fmt::format(", {} outside the window", fit.n_outside);
   if (fit.n_zero > 0) text += fmt::format(", {} zero and left out", fit.n_zero);
   if (fit.n_invalid > 0) text += fmt::format(", {} invalid and left out", fit.n_invalid);
@@ -47,9 +48,10 @@ std::string text_of(const calibration::CurveFit& fit) {
     text += fmt::format("correlation with the curve: {:.6f}\n", fit.correlation);
   text += fmt::format("rms residual: {:.4g}\n", report.rms());
   if (std::isfinite(fit.runs.p))
-    text += fmt::format("residual signs: {} runs, {} points above and {} below, p = {:.3g}\n", fit.runs.runs,
-                        fit.runs.positive, fit.runs.negative, fit.runs.p);
-  if (!fit.law->nested.empty())
+    text +=
+        fmt::format("residual signs: {}, {} above and {} below, p = {:.3g}\n", counted(fit.runs.runs, "run"),
+                    counted(fit.runs.positive, "point"), fit.runs.negative, fit.runs.p);
+  if (!fit.law->nested.empty() && std::isfinite(fit.p_nested))
     text += fmt::format("against {}: p = {:.3g}\n", fit.law->nested, fit.p_nested);
   text += fmt::format("condition number: {:.3g}\n", report.condition);
   text += report.undetermined.empty()

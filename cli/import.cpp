@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <map>
 #include <memory>
 
@@ -28,7 +29,7 @@ struct ImportOptions {
 /// Notes on units and sizes that no file of beads is likely to have.
 void note_doubts(const Common& common, const ForeignTrajectory& source, double sigma) {
   constexpr double kClosest = 0.5, kFarthest = 3;  // sigma
-  if (const double d = source.spacing(); source.info().n_beads > 1 && (d < kClosest || d > kFarthest))
+  if (const double d = source.spacing(); std::isfinite(d) && (d < kClosest || d > kFarthest))
     note(common, fmt::format("the nearest neighbours in the first frame are {:.3g} bead diameters apart; the "
                              "bead diameter is {:g} in the unit of the file (--sigma).",
                              d, sigma));

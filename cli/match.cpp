@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "analysis/report/report.hpp"
 #include "cli/comparing_options.hpp"
 #include "cli/locating_options.hpp"
 #include "cli/phase_options.hpp"
@@ -126,15 +127,33 @@ twin::Twin add_twin(const Common& common, const MatchOptions& o, const twin::Twi
   return twin;
 }
 
+/// \throws ConfigError if the folder holds the result of a match of another layout, or a report that may not
+/// be replaced: known before the first hour
+void require_layout(const std::filesystem::path& folder, bool several) {
+  namespace fs = std::filesystem;
+  std::error_code ec;
+  if (!fs::is_directory(folder, ec)) return;
+  if (several && fs::exists(folder / "experiment.h5", ec))
+    throw ConfigError({.file = folder.string()}, "it holds the match of one stack; name a new folder.");
+  if (!several)
+    for (const auto& entry : fs::directory_iterator(folder, ec))
+      if (fs::exists(entry.path() / "experiment.h5", ec))
+        throw ConfigError({.file = folder.string()},
+                          "it holds the match of several stacks; name a new folder.");
+  (void)require_output(folder / "report", analysis::report_folder());
+}
+
 /// Makes the twins of all stacks, each in a folder of its own if there are several.
 std::vector<twin::Twin> make_twins(const Common& common, const MatchOptions& o,
                                    const twin::StacksAndCells& pairs, twin::ComparingOptions& comparing) {
   const std::filesystem::path folder = o.output;
   const std::vector<std::string> names = twin::names_of_stacks(pairs.stacks);
   const bool several = pairs.stacks.size() > 1;
+  require_layout(folder, several);
   if (several) claim_shared_folder(folder, twin::twin_folder());
   twin::TwinOptions options = o.twin;
   options.threads = common.n_threads();
+  options.discard = comparing.analysis.discard_cycles;
   std::vector<twin::Twin> twins;
   for (std::size_t i = 0; i < pairs.stacks.size(); ++i) {
     options.stack = pairs.stacks[i];

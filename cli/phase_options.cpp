@@ -9,6 +9,7 @@
 
 #include "cli/numbers.hpp"
 #include "core/choice.hpp"
+#include "core/counted.hpp"
 
 namespace twincell::cli {
 
@@ -48,7 +49,8 @@ std::string phases_in_words(const imaging::PhaseTable& p) {
     if (p.jitter)
       text += fmt::format(", jitter {}{:.3f} frames",
                           p.method == imaging::PhaseMethod::found ? "at most " : "", *p.jitter);
-    if (!p.frames.empty()) text += fmt::format(", {} frames dropped, {} taken twice", p.dropped, p.doubled);
+    if (!p.frames.empty())
+      text += fmt::format(", {} dropped, {} taken twice", counted(p.dropped, "frame"), p.doubled);
     // No triggered camera is known to miss so many frames. A camera that runs free of the drive slips
     // continually.
     constexpr double kMostSlips = 0.1;

@@ -16,6 +16,7 @@
 #include "cli/profile.hpp"
 #include "cli/verb.hpp"
 #include "core/cancellation.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "sim/accuracy/step_error.hpp"
 #include "sim/run/checkpoint_folder.hpp"
@@ -136,7 +137,8 @@ nlohmann::json describe(const sim::Simulation& run, const std::string& output, s
 }
 
 std::string as_text(const nlohmann::json& d, bool verbose) {
-  std::string s = fmt::format("{} beads, {}\n", d["beads"].get<long>(), d["kernel"].get<std::string>());
+  std::string s =
+      fmt::format("{}, {}\n", counted(d["beads"].get<long>(), "bead"), d["kernel"].get<std::string>());
   if (d["gamma"].is_number())
     s += fmt::format("Gamma = {:.6g}, K_m = {:.6g}{}, displacement {}\n", d["gamma"].get<double>(),
                      d["k_m"].get<double>(), d["ramp"].is_object() ? " before the ramp" : "",
@@ -167,10 +169,10 @@ std::string as_text(const nlohmann::json& d, bool verbose) {
         d["contact_fraction"].get<double>() > kHardBeads
             ? "; theories of hard beads, which assume instantaneous collisions, are not valid above 0.1"
             : "");
-  s += fmt::format(
-      "{} cycles after {} discarded, {:.3g} s, {:.3g} million particle-steps/s, {} neighbour lists built\n",
-      d["cycles"].get<long>(), d["discarded"].get<long>(), d["seconds"].get<double>(),
-      1e-6 * d["particle_steps_per_second"].get<double>(), d["list_builds"].get<long>());
+  s += fmt::format("{} after {} discarded, {:.3g} s, {:.3g} million particle-steps/s, {} built\n",
+                   counted(d["cycles"].get<long>(), "cycle"), d["discarded"].get<long>(),
+                   d["seconds"].get<double>(), 1e-6 * d["particle_steps_per_second"].get<double>(),
+                   counted(d["list_builds"].get<long>(), "neighbour list"));
   if (d["continued_from_step"].is_number())
     s += fmt::format("continued from step {} of a checkpoint\n", d["continued_from_step"].get<long>());
   return s + d["output"].get<std::string>() + "\n";

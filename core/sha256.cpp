@@ -58,4 +58,10 @@ std::string sha256_of(const fs::path& path) {
   return digest.hex();
 }
 
+std::string sha256_of_text(const std::string& text) {
+  Sha256 sum;
+  sum.add(text.data(), text.size());
+  return sum.hex();
+}
+
 }  // namespace twincell

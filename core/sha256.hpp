@@ -30,4 +30,7 @@ class Sha256 {
 /// \throws InputError if a file cannot be read
 std::string sha256_of(const std::filesystem::path& path);
 
+/// SHA-256 of a text, as 64 hex digits.
+std::string sha256_of_text(const std::string& text);
+
 }  // namespace twincell

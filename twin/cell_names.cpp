@@ -6,6 +6,7 @@
 #include <iterator>
 #include <map>
 
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "imaging/stack/open_frames.hpp"
 
@@ -111,11 +112,11 @@ StacksAndCells pair_stacks(const std::vector<fs::path>& arguments) {
     return p;
   }
   if (!p.cells.empty())
-    throw ConfigError(
-        {.file = {}, .key = "match"},
-        fmt::format("{} stacks and {} cell files{} are named; give one cell file for all stacks, or one "
-                    "for each, in their order.",
-                    n, p.cells.size(), folder.empty() ? "" : " and a folder of cell files"));
+    throw ConfigError({.file = {}, .key = "match"},
+                      fmt::format("{} and {}{} are named; give one cell file for all stacks, or one "
+                                  "for each, in their order.",
+                                  counted(n, "stack"), counted(p.cells.size(), "cell file"),
+                                  folder.empty() ? "" : " and a folder of cell files"));
   const std::vector<std::string> names = names_of_stacks(p.stacks);
   for (std::size_t i = 0; i < n; ++i) {
     const fs::path cell = folder.empty() ? p.stacks[i] / "CELL.toml" : folder / (names[i] + ".toml");

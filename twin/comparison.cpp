@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
 
 #include "analysis/runs/pooling.hpp"
 #include "core/atomic_file.hpp"
+#include "core/counted.hpp"
 #include "core/json_view.hpp"
 #include "imaging/camera/noise_matched_camera.hpp"
 #include "imaging/stack/open_frames.hpp"
@@ -39,10 +41,10 @@ struct Sides {
 /// Opens the trajectories. \throws ConfigError if the named stacks do not match the experiments
 Sides read_sides(const ComparingOptions& options) {
   if (!options.stacks.empty() && options.stacks.size() != options.experiments.size())
-    throw ConfigError(
-        {.file = {}, .key = "--stack"},
-        fmt::format("{} stacks were named for {} experiments; give one for each, in their order.",
-                    options.stacks.size(), options.experiments.size()));
+    throw ConfigError({.file = {}, .key = "--stack"},
+                      fmt::format("{} given for {}; give one for each, in their order.",
+                                  counted(options.stacks.size(), "stack"),
+                                  counted(options.experiments.size(), "experiment")));
   Sides sides;
   sides.n_experiments = options.experiments.size();
   for (const auto* files : {&options.experiments, &options.simulations})
@@ -112,8 +114,22 @@ fs::path stack_behind(const ComparingOptions& options, const TrajectorySource& t
   return options.stacks.empty() ? stack_of(trajectory.info()) : options.stacks[i];
 }
 
+/// \throws ConfigError if the frames of a stack do not have the size of those that were tracked
+void require_size(const fs::path& stack, const analysis::PictureFrame& camera,
+                  const std::string& experiment) {
+  cv::Mat first;
+  if (!imaging::open_frames(stack)->next(first) || first.empty()) return;
+  if (first.cols == camera.width && first.rows == camera.height) return;
+  throw ConfigError(
+      {.file = {}, .key = "--stack"},
+      fmt::format("frames of {} are {} x {} px, those in which {} was tracked {} x {} px; name its own "
+                  "stack.",
+                  stack.string(), first.cols, first.rows, experiment, camera.width, camera.height));
+}
+
 /// Adds the camera's scale and the frames at the snapshots of an experiment.
-void show_frames(const TrajectoryInfo& info, const fs::path& stack, analysis::Run& run,
+/// \param is_named whether the user named the stack
+void show_frames(const TrajectoryInfo& info, const fs::path& stack, bool is_named, analysis::Run& run,
                  std::vector<std::string>& notes) {
   if (info.tracking_json.empty()) return;  // not made by `track`
   double rotation_deg = 0, distortion = 0;
@@ -136,6 +152,7 @@ void show_frames(const TrajectoryInfo& info, const fs::path& stack, analysis::Ru
     return;
   }
   if (stack.empty()) return;
+  if (is_named) require_size(stack, *run.show.camera, run.name);
   std::vector<std::int64_t> numbers;
   for (const analysis::Snapshot& moment : run.show.moments) numbers.push_back(moment.frame.step);
   try {
@@ -258,7 +275,8 @@ std::vector<analysis::Run> analyse(const Sides& sides, const ComparingOptions& o
     for (const std::size_t f : analysis::representative_frames(trajectory, most))
       run.show.moments.push_back(analysis::snapshot(trajectory, f, run.cutoff));
     if (run.side == analysis::Side::experiment)
-      show_frames(trajectory.info(), stack_behind(options, trajectory, i), run, notes);
+      show_frames(trajectory.info(), stack_behind(options, trajectory, i), !options.stacks.empty(), run,
+                  notes);
     for (auto& lines : analysis::tracer_lines(trajectory, i, options.analysis))
       checks.tracers.push_back(std::move(lines));
     runs.push_back(std::move(run));
@@ -313,7 +331,7 @@ analysis::Comparison compare_runs(const ComparingOptions& options, const Progres
   if (options.film) c.checks.filmed = film_matches(sides, options, c.matches, progress, notes, c.runs);
   limit_pictures(c.runs);
   c.boundaries = analysis::find_boundaries(c.runs);
-  for (const fs::path& file : options.sweeps) add_sweep(file, c);
+  add_sweeps(options.sweeps, c);
   c.differences = analysis::find_differences(c.runs, c.matches, c.checks);
   return c;
 }

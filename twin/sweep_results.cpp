@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -95,8 +96,29 @@ void add_sweep(const fs::path& file, analysis::Comparison& comparison) {
   if (!document.value().is_object() || document.value().value("format", json()) != "twincell sweep 1")
     throw InputError({.file = file.string()},
                      "is not a sweep's collected results (\"format\": \"twincell sweep 1\").");
+  const std::size_t before = comparison.sweep.size() + comparison.boundaries.size();
   add_points(document, comparison);
   add_onsets(document, comparison);
+  if (comparison.sweep.size() + comparison.boundaries.size() == before)
+    throw InputError(
+        {.file = file.string()},
+        "no point of the sweep has a place in the diagram, which needs Gamma, N_l and the phase; "
+        "add \"phase\" to the results of its plan.");
+}
+
+void add_sweeps(const std::vector<fs::path>& files, analysis::Comparison& comparison) {
+  std::map<std::string, fs::path> known;
+  for (const fs::path& file : files) {
+    const std::string text = read_text_file(file);
+    const json document = json::parse(text, nullptr, false);
+    const std::string points = document.is_object() ? document.value("points", json()).dump() : text;
+    const auto [same, is_new] = known.try_emplace(points, file);
+    if (!is_new)
+      throw ConfigError({.file = {}, .key = "--sweep"},
+                        fmt::format("{} and {} hold the same points; name the sweep once.",
+                                    same->second.string(), file.string()));
+    add_sweep(file, comparison);
+  }
 }
 
 }  // namespace twincell::twin

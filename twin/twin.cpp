@@ -9,8 +9,10 @@
 #include "calibration/drive/plate_drive.hpp"
 #include "core/atomic_file.hpp"
 #include "core/config.hpp"
+#include "core/counted.hpp"
 #include "core/median.hpp"
 #include "core/output_rules.hpp"
+#include "core/sha256.hpp"
 #include "core/toml_leaves.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/track/track.hpp"
@@ -30,6 +32,32 @@ namespace fs = std::filesystem;
 constexpr double kLargestShift = 0.01;
 /// First line of a generated scene, which allows a later run to replace the file.
 const char* const kSceneHead = "# The scene of a filmed cell, by twincell match.\n";
+
+/// Second line of a generated scene: the checksum of the lines below, which shows whether somebody changed
+/// them.
+std::string checksum_line(const std::string& below) {
+  constexpr std::size_t kDigits = 16;
+  return "# SHA-256 of the lines below begins with " + sha256_of_text(below).substr(0, kDigits) + "\n";
+}
+
+/// \throws ConfigError if the folder holds what a match into it would lose or mix with its own results
+void require_room(const fs::path& folder, int twins) {
+  std::error_code ec;
+  const std::string head = kSceneHead;
+  if (const fs::path scene = folder / "scene.toml"; fs::is_regular_file(scene, ec)) {
+    const std::string text = read_text_file(scene);
+    const std::size_t line = text.starts_with(head) ? text.find('\n', head.size()) : std::string::npos;
+    if (line != std::string::npos &&
+        text.substr(head.size(), line + 1 - head.size()) != checksum_line(text.substr(line + 1)))
+      throw ConfigError({.file = scene.string()},
+                        "it has changed since twincell wrote it; move it, or name a new folder.");
+  }
+  if (const fs::path more = folder / fmt::format("simulation-{}.h5", twins + 1); fs::exists(more, ec))
+    throw ConfigError(
+        {.file = more.string()},
+        "it is a twin of an earlier match with more twins, and would count as one of these; remove "
+        "it, or name a new folder.");
+}
 
 void require_known(const imaging::CellDescription& cell, const fs::path& file) {
   const auto need = [&](bool known, const char* key, const char* why) {
@@ -270,8 +298,17 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
     return twin_scene(base, options.scene.string(), filmed.cell, twin.experiment.filename(), frame, cycles);
   };
   check_scene(filmed.cell, [&] {
-    (void)sim::read_scene_text(scene_text(0, 1), twin.scene.string(), options.assignments, folder);
+    try {
+      (void)sim::read_scene_text(scene_text(0, 1), twin.scene.string(), options.assignments, folder);
+    } catch (const ConfigError& e) {
+      // The user knows the file that was named, not the scene that is made of it and of the cell.
+      if (options.scene.empty() || !std::string(e.what()).starts_with(twin.scene.string())) throw;
+      throw ConfigError(
+          {.file = options.scene.string()},
+          "with the cell's values: " + std::string(e.what()).substr(twin.scene.string().size() + 1));
+    }
   });
+  require_room(folder, options.twins);
   const calibration::DriveCheck check = check_plate(filmed, options, progress);
   const auto frames = options.open_stack ? options.open_stack() : imaging::open_frames(options.stack);
   claim_shared_folder(folder, twin_folder());
@@ -282,7 +319,12 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
   twin.beads = first.beads;
   twin.cycles = first.cycles;
   twin.position_error = first.position_error;
-  const std::string scene = std::string(kSceneHead) + scene_text(first.frame, first.cycles);
+  if (options.discard >= twin.cycles)
+    throw ConfigError({.file = {}, .key = "--discard"},
+                      fmt::format("is {}, but {} shows only {}.", options.discard, options.stack.string(),
+                                  counted(twin.cycles, "cycle")));
+  const std::string below = scene_text(first.frame, first.cycles);
+  const std::string scene = kSceneHead + checksum_line(below) + below;
   write_text_file(twin.scene, scene, Product::text("a scene", kSceneHead));
   simulate_twins(scene, twin, options, folder, provenance, progress);
   return twin;

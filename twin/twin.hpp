@@ -40,6 +40,7 @@ struct TwinOptions {
   imaging::LinkOptions link;
   int threads = 1;
   bool trust_stated_drive = false;  ///< do not check the stated drive and phase lock against the frames
+  std::int64_t discard = 0;         ///< cycles that the comparison will leave out of both sides
   imaging::PhaseSource phases;      ///< source of the phases, if not the cell's frames per cycle
   std::optional<imaging::PhaseLock> phase_lock;  ///< replaces that of the cell
 };

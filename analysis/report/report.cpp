@@ -65,12 +65,16 @@ std::string real_differences(const Comparison& c) {
   constexpr std::size_t kMostNamed = 5;
   const bool heights = heights_of(c.matches).size() > 1;
   std::vector<std::string> names;
-  for (const Difference& d : c.differences)
+  std::size_t without_error = 0;
+  for (const Difference& d : c.differences) {
+    if (!d.in_errors()) ++without_error;
     if (d.is_real())
       names.push_back(fmt::format("{} at {}", d.quantity, condition_text(c.matches[d.match], heights)));
+  }
   if (c.differences.empty()) return {};
   if (names.empty())
-    return fmt::format("None of the {} compared numbers really differs.", c.differences.size());
+    return fmt::format("None of the {} compared numbers really differs{}.", c.differences.size(),
+                       without_error > 0 ? fmt::format("; of {} no error is known", without_error) : "");
   const std::size_t n = names.size();
   if (n > kMostNamed) names.resize(kMostNamed);
   return fmt::format("{} of the {} compared numbers really differ{}: {}{}.", n, c.differences.size(),
@@ -107,7 +111,10 @@ std::vector<std::string> conclusion_sentences(const Comparison& c) {
                                condition_text(match, heights), phases_of(runs, match.experiments),
                                phases_of(runs, match.simulations)));
   }
-  if (paired == 0) return {"No drive strength was run on both sides."};
+  if (paired == 0)
+    return {heights_of(matches).size() > 1
+                ? "No drive strength was run on both sides at the same height of the bed."
+                : "No drive strength was run on both sides."};
   std::vector<std::string> text = {
       fmt::format("Same phase on both sides at {} of {} {}.", same, paired,
                   heights ? "points (drive strength and height)" : "drive strengths")};

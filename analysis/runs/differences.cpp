@@ -9,6 +9,7 @@
 
 #include "analysis/motion/tracers.hpp"
 #include "analysis/statistics/statistics.hpp"
+#include "core/counted.hpp"
 
 namespace twincell::analysis {
 namespace {
@@ -296,17 +297,18 @@ std::string real_differences_text(const std::vector<Difference>& differences,
   if (differences.empty()) return {};
   const Conditions conditions(matches);
   std::string rows;
-  std::size_t others = 0;
+  std::size_t others = 0, without_error = 0;
   bool filmed = true, other_starts = true;
   for (const Difference& d : differences) {
     if (!d.is_real()) {
-      ++others;
+      ++(d.in_errors() ? others : without_error);
       continue;
     }
     const auto share = d.camera_share();
-    rows += fmt::format("{}  {:<24}{:>12.4g}{:>12.4g}{:>12.3g}{:>10.1f}{}\n", conditions.of(matches[d.match]),
+    const double errors = std::abs(d.in_errors().value_or(0));
+    rows += fmt::format("{}  {:<24} {:>11.4g} {:>11.4g} {:>11.3g} {:>9}{}\n", conditions.of(matches[d.match]),
                         d.quantity, d.experiment.value, d.simulation.value, d.difference(),
-                        std::abs(d.in_errors().value_or(0)),
+                        errors < 1e5 ? fmt::format("{:.1f}", errors) : fmt::format("{:.1e}", errors),
                         share ? fmt::format("  camera {:.0f} %", 100 * std::min(1.0, *share)) : "");
     filmed = filmed && d.camera.has_value();
     other_starts = other_starts && d.defects.has_value();
@@ -318,8 +320,12 @@ std::string real_differences_text(const std::vector<Difference>& differences,
     if (!filmed) rows += "nothing was filmed, so that camera and tracking may cause a difference\n";
     if (!other_starts) rows += "one start alone does not show whether defects cause a difference\n";
   }
-  return rows +
-         fmt::format("{} other numbers agree within their errors (differences.csv in the report).\n", others);
+  if (without_error > 0)
+    rows += fmt::format("no error is known of {}, so that nothing follows from {}\n",
+                        counted(without_error, "other number"), without_error == 1 ? "it" : "them");
+  return rows + fmt::format("{} {} within {} errors (differences.csv in the report).\n",
+                            counted(others, rows.empty() ? "number" : "other number"),
+                            others == 1 ? "agrees" : "agree", others == 1 ? "its" : "their");
 }
 
 }  // namespace twincell::analysis

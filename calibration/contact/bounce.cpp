@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
 
@@ -110,6 +111,24 @@ std::vector<const BounceSample*> between(const std::vector<BounceSample>& s, dou
   return in;
 }
 
+/// Lower limit of the noise: simulated heights scatter by rounding only, which differs between the two halves
+/// of a flight.
+constexpr double kFinest = 1e-5;  // of the span of the heights
+double finest_of(const std::vector<BounceSample>& s) {
+  const auto [low, high] = std::minmax_element(
+      s.begin(), s.end(), [](const auto& a, const auto& b) { return a.height < b.height; });
+  return kFinest * (high->height - low->height);
+}
+
+/// Scatter of neighbouring heights about a smooth curve, from third differences: impacts are too few to show.
+double scatter_of(const std::vector<BounceSample>& s) {
+  constexpr double kOfThird = 4.4721359549995796;  // sqrt(1 + 9 + 9 + 1), of independent errors of 1
+  std::vector<double> third;
+  for (std::size_t i = 0; i + 3 < s.size(); ++i)
+    third.push_back(std::abs(s[i + 3].height - 3 * s[i + 2].height + 3 * s[i + 1].height - s[i].height));
+  return 1.4826 * upper_median(std::move(third)) / kOfThird;
+}
+
 /// Times at which the height above the plate, after a median filter against single outliers, turns from
 /// falling to rising.
 std::vector<double> turning_points(const std::vector<BounceSample>& s, const PlateMotionAt& plate) {
@@ -162,12 +181,7 @@ std::vector<double> rough_impacts(const std::vector<BounceSample>& s, const Plat
       own.push_back(residual(edges[i], edges[i + 1]));
   if (own.empty()) return {};
   std::sort(own.begin(), own.end());
-  // Simulated heights scatter by rounding only, which differs between the two halves of a flight: set a lower
-  // limit.
-  constexpr double kFinest = 1e-5;
-  const auto [low, high] = std::minmax_element(
-      s.begin(), s.end(), [](const auto& a, const auto& b) { return a.height < b.height; });
-  const double noise = std::max(own[own.size() / 3], kFinest * (high->height - low->height));
+  const double noise = std::max(own[own.size() / 3], finest_of(s));
   for (std::size_t i = 1; i + 1 < edges.size();) {
     if (residual(edges[i - 1], edges[i + 1]) <= 1.6 * noise) {
       edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(i));
@@ -246,6 +260,7 @@ class SeriesFit {
     if (samples_.size() < 2 * kFewestSamples) throw too_few(0);
     dt_ = (samples_.back().time - samples_.front().time) / static_cast<double>(samples_.size() - 1);
     split_into_flights();
+    keep_free_flights();
     choose_parameters();
   }
 
@@ -271,6 +286,7 @@ class SeriesFit {
 
   [[nodiscard]] InputError too_few(std::size_t flights) const;
   void split_into_flights();
+  void keep_free_flights();
   void choose_parameters();
   void start_from_parabolas();
   void move_end_to_crossing(std::size_t flight);
@@ -281,6 +297,7 @@ class SeriesFit {
   void fit_robustly();
   void fit_without_outliers();
   void add_impacts(BounceFit& out) const;
+  static void require_physical(const BounceFit& fit);
   void add_mean(BounceFit& out, const Eigen::MatrixXd& covariance) const;
   [[nodiscard]] Eigen::MatrixXd slopes_of_restitution() const;
   [[nodiscard]] bool is_in(const BounceSample& q, double begin, double end) const {
@@ -296,10 +313,9 @@ class SeriesFit {
 };
 
 InputError SeriesFit::too_few(std::size_t flights) const {
-  return {
-      {.file = {}, .key = "bounces"},
-      fmt::format("{} samples show {} flights of at least {} samples; two consecutive flights are needed.",
-                  samples_.size(), flights, kFewestSamples)};
+  return {{.file = {}, .key = "bounces"},
+          fmt::format("{} show {} of at least {} samples; two consecutive flights are needed.",
+                      counted(samples_.size(), "sample"), counted(flights, "free flight"), kFewestSamples)};
 }
 
 // Splits the series at the impacts. The first flight that is too short, as when the bouncing dies out, ends
@@ -319,6 +335,44 @@ void SeriesFit::split_into_flights() {
     else if (!s_.flights.empty())
       break;
   }
+  if (s_.flights.size() < 2) throw too_few(s_.flights.size());
+}
+
+// A bead that is held, or has come to rest, does not fly: its heights do not curve as those of the flights
+// do. Such parts at the beginning are skipped, the first one after a flight ends the series.
+void SeriesFit::keep_free_flights() {
+  constexpr double kFar = 0.3, kClear = 5;
+  std::vector<double> curvatures, residuals;
+  for (const Flight& f : s_.flights) {
+    const Parabola parabola = least_absolute(between(samples_, f.begin, f.end), f.middle());
+    curvatures.push_back(parabola.c[2]);
+    residuals.push_back(parabola.median_residual);
+  }
+  const double seen = median_of(curvatures), gravity = options_.gravity.value_or(seen);
+  if (!(seen > 0))
+    throw InputError({.file = {}, .key = "bounces"},
+                     "no free flights are seen, because most of the flights do not curve downwards; heights "
+                     "must count upwards.");
+  std::sort(residuals.begin(), residuals.end());
+  const double noise = std::max(residuals[residuals.size() / 3], finest_of(samples_));
+  const auto is_free = [&](std::size_t f) {
+    const double off = std::abs(curvatures[f] - gravity), lasts = s_.flights[f].end - s_.flights[f].begin;
+    return off < kFar * gravity || off * lasts * lasts / 16 < kClear * noise;
+  };
+  std::vector<Flight> kept;
+  for (std::size_t f = 0; f < s_.flights.size(); ++f) {
+    if (is_free(f))
+      kept.push_back(s_.flights[f]);
+    else if (!kept.empty())
+      break;
+  }
+  if (kept.empty() && options_.gravity)
+    throw InputError(
+        {.file = {}, .key = "--gravity"},
+        fmt::format("is {:g}, but the flights curve as under a gravity of {:.3g}; state it in the "
+                    "units of the heights and times.",
+                    gravity, seen));
+  s_.flights = std::move(kept);
   if (s_.flights.size() < 2) throw too_few(s_.flights.size());
 }
 
@@ -456,7 +510,41 @@ BounceFit SeriesFit::result() const {
     throw InputError({.file = {}, .key = "bounces"},
                      fmt::format("the flights do not determine restitution: {}.", report_.why_not));
   add_impacts(out);
+  require_physical(out);
+  constexpr double kFar = 10, kShare = 0.01;
+  const double scatter = scatter_of(samples_), span = finest_of(samples_) / kFinest;
+  if (out.rms > kFar * scatter && out.rms > kShare * span)
+    throw InputError(
+        {.file = {}, .key = "bounces"},
+        fmt::format("the heights are no free flights between impacts: they lie {:.2g} from the best "
+                    "ones, and scatter by {:.2g} only.",
+                    out.rms, scatter));
   return out;
+}
+
+// What no bead does comes from heights that are no bounces, and is no measurement.
+void SeriesFit::require_physical(const BounceFit& fit) {
+  constexpr double kClear = 3, kUseful = 0.3;  // standard errors; largest error of a measurement
+  const auto fail = [](const std::string& what) { throw InputError({.file = {}, .key = "bounces"}, what); };
+  if (!(fit.gravity > 0))
+    fail(fmt::format("the heights are no bounces: the best gravity is {:.3g}.", fit.gravity));
+  for (const BounceImpact& i : fit.impacts)
+    if (!(i.speed > 0))
+      fail(fmt::format(
+          "the heights are no bounces: at the impact at t = {:.4g} the bead would leave the plate "
+          "before it.",
+          i.time));
+  if (!(fit.restitution_error <= kUseful))
+    fail(fmt::format("the flights do not determine restitution: e_n = {:.3g} +- {:.2g}.", fit.restitution,
+                     fit.restitution_error));
+  if (fit.restitution > 1 + kClear * fit.restitution_error)
+    fail(fmt::format(
+        "e_n = {:.6g} +- {:.2g} is above 1, so the bead gains energy at its impacts; if the plate "
+        "vibrates, give --drive-amplitude and --drive-omega.",
+        fit.restitution, fit.restitution_error));
+  if (fit.restitution < -kClear * fit.restitution_error)
+    fail(fmt::format("e_n = {:.3g} +- {:.2g} is negative, so the heights are no bounces.", fit.restitution,
+                     fit.restitution_error));
 }
 
 // Derivatives of each impact's restitution with respect to all parameters, by central differences.
@@ -502,6 +590,12 @@ void SeriesFit::add_mean(BounceFit& out, const Eigen::MatrixXd& covariance) cons
   // Scale only beyond three standard deviations of chi^2, which itself fluctuates for few impacts.
   const bool grown = freedom > 0 && chi2 > freedom + 3 * std::sqrt(2 * freedom);
   out.restitution_error = std::sqrt((grown ? excess : 1) / w.dot(one));
+  constexpr double kClear = 5;
+  if (out.drag_error > 0 && out.drag < -kClear * out.drag_error)
+    out.notes.push_back(
+        fmt::format("the drag is negative, {:.3g} +- {:.1g}: air does not push a bead; check times, "
+                    "heights and the stated gravity",
+                    out.drag, out.drag_error));
   if (grown)
     out.notes.push_back(
         fmt::format("the impacts differ by more than the film's noise (chi^2 = {:.3g} of {:g}): e_n depends "

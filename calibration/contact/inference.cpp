@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "analysis/statistics/statistics.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 
 namespace twincell::calibration {
@@ -186,9 +187,9 @@ double drop_of(const std::vector<Surface>& surfaces) {
   }
   const double left = freedom - std::max(together, 1.0) + 1;
   if (left < 2)
-    throw InputError(
-        {.file = {}, .key = "runs"},
-        fmt::format("{:g} observables of the same runs need {:g} more runs.", together, 2 - left));
+    throw InputError({.file = {}, .key = "runs"},
+                     fmt::format("{:g} observables of the same runs need {} more.", together,
+                                 counted(static_cast<int>(std::ceil(2 - left)), "run")));
   const double t95 = boost::math::quantile(boost::math::students_t(left), 0.975);
   return t95 * t95 * freedom / left;
 }
@@ -353,7 +354,7 @@ Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<
     out.predicted.push_back(v.y);
     out.slope.push_back(v.slope);
   }
-  if (out.freedom > 0 && out.chi2 > out.freedom + 3 * std::sqrt(2 * out.freedom) + 4)
+  if (out.chi2 > out.freedom + 3 * std::sqrt(2 * out.freedom) + 4)
     out.notes.push_back(
         fmt::format("no parameters in the search range describe the measurement: chi^2 = {:.3g} of {:g}",
                     out.chi2, out.freedom));

@@ -11,6 +11,7 @@
 #include <numeric>
 #include <set>
 
+#include "core/counted.hpp"
 #include "core/error.hpp"
 
 namespace twincell::calibration {
@@ -92,8 +93,9 @@ Selected select(const Law& law, const std::vector<DataPoint>& points, const FitW
   if (abscissas.size() < std::min<std::size_t>(2, needed) || selected.points.size() < needed)
     throw InputError(
         {.file = {}, .key = "points"},
-        fmt::format("{} points at {} different abscissas cannot determine the {} parameters of {}; {}",
-                    selected.points.size(), abscissas.size(), needed, law.name, data));
+        fmt::format("{} at {} cannot determine the {} of {}; {}", counted(selected.points.size(), "point"),
+                    abscissas.size() == 1 ? "one abscissa" : counted(abscissas.size(), "abscissa"),
+                    counted(needed, "parameter"), law.name, data));
   return selected;
 }
 
@@ -247,6 +249,14 @@ void add_notes(CurveFit& result, const Selected& selected) {
             fmt::format("{} and {} are correlated ({:.4f}): compare curves, not coefficients",
                         fit.names[static_cast<std::size_t>(a)], fit.names[static_cast<std::size_t>(b)], r));
     }
+  const double chi2 = 2 * fit.cost_after,
+               freedom = static_cast<double>(selected.points.size()) - static_cast<double>(fit.values.size());
+  if (result.weighted && chi2 > freedom + 3 * std::sqrt(2 * freedom) + 4)
+    result.notes.push_back(
+        fmt::format("the curve misses the points by more than their stated errors: chi^2 = {:.3g} of {:g}; "
+                    "the intervals hold "
+                    "only for a law that describes the points",
+                    chi2, freedom));
   if (result.runs.p < kSuspicious)
     result.notes.push_back(fmt::format(
         "residuals are not in random order: {} runs of {} above and {} below the curve (p = {:.2g})",

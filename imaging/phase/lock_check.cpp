@@ -67,6 +67,14 @@ bool by_plate(PhaseTable& table, const PhaseLock& lock, std::span<const double> 
     const long shown =
         ((std::lround(fit.phase * cycle - lock.offset) % table.frames_per_cycle) + table.frames_per_cycle) %
         table.frames_per_cycle;
+    constexpr double kWrong = 1.5;  // frames
+    if (std::abs(off) > kWrong)
+      throw ConfigError(
+          Where{.file = {}, .key = "first_phase"},
+          fmt::format("is {}, but the plate in the frames shows the first frame at phase {} of {}; "
+                      "correct it (camera.first_phase, --first-phase), or keep it with "
+                      "--trust-stated-drive.",
+                      table.first_phase, shown, table.frames_per_cycle));
     table.warning += fmt::format(
         "{}the plate shows the first frame at phase {} of {}, but the stated first phase is {} "
         "(--first-phase)",

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/counted.hpp"
+
 namespace twincell::imaging {
 
 namespace {
@@ -47,7 +49,7 @@ PlateReading read(std::span<const double> plate, int frames_per_cycle, const Fre
     return out;
   }
   if (plate.size() < static_cast<std::size_t>(frames_per_cycle)) {
-    out.why_not = fmt::format("{} frames are less than a cycle", plate.size());
+    out.why_not = fmt::format("{} are less than a cycle", counted(plate.size(), "frame"));
     return out;
   }
   std::optional<SineSlips> fit = fit_sine_with_slips(plate, frames_per_cycle);

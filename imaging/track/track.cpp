@@ -33,15 +33,21 @@ std::optional<double> lowest_plate(const CellDescription& cell) {
   return drive->axis == Axis::z ? -drive->displacement_bound() : 0;
 }
 
-/// \throws ConfigError if all detections lie outside the cell
+/// \throws InputError without any detection; ConfigError if most of them lie outside the cell
 void require_some_inside(const CellDescription& cell, std::size_t inside, std::size_t outside) {
-  if (inside > 0 || outside == 0) return;
+  if (inside == 0 && outside == 0)
+    throw InputError(
+        Where{},
+        "No bead was located in any frame; --dark, --bright or --diameter may help, and twincell "
+        "locate STACK --view page.html shows what was considered.");
+  if (inside >= outside) return;
   throw ConfigError(
       Where{.file = {}, .key = "camera.origin_px"},
       fmt::format(
-          "is {:g}, {:g}, but none of the {} located beads lies inside the cell{}{}; correct the origin, "
-          "camera.pixels_per_sigma = {:g}, or the size of the cell.",
-          cell.origin->x_px, cell.origin->y_px, outside,
+          "is {:g}, {:g}, but {} of the {} located beads lie inside the cell{}{}; correct the origin, "
+          "camera.pixels_per_sigma = {:g}, or the size of the cell, or select a part of the picture (--roi).",
+          cell.origin->x_px, cell.origin->y_px,
+          inside == 0 ? std::string("none") : fmt::format("only {}", inside), inside + outside,
           cell.width ? fmt::format(" of width {:g}", *cell.width) : "",
           cell.height ? fmt::format(" and height {:g}", *cell.height) : "", *cell.pixels_per_sigma));
 }

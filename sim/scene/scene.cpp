@@ -179,6 +179,8 @@ void read_beads(const Section& s, Scene& scene, Voids& voids) {
     if (!(beads <= static_cast<double>(kMost)))
       throw ConfigError(s.where("layers"),
                         fmt::format("{:g} layers are {:g} beads, the bound is {}.", *layers, beads, kMost));
+    if (*layers > 0 && beads < 1)
+      throw ConfigError(s.where("layers"), fmt::format("{:g} layers are less than one bead.", *layers));
     scene.n_beads = static_cast<std::size_t>(beads);
   }
   scene.spread = read_word(s, "spread", {"none", "uniform", "normal"}, scene.spread);

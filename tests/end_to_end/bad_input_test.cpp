@@ -162,8 +162,11 @@ TEST_F(BadInput, OtherProgramsDumps) {
   write(at("cut.dump"), frame);
   expect_refusal({"import", at("cut.dump"), "-o", at("o.h5")}, kInput, {"cut.dump:9", "ends"});
   write(at("whole.dump"), frame + "1 1 1\n");
+  write(at("minus.csv"), "frame,particle,x,y,sigma_x,sigma_y\n0,0,1,-1,-0.1,0.1\n1,0,1,-1,0,0.1\n");
+  expect_refusal({"import", at("minus.csv"), "-o", at("o.h5"), "--timestep", "1"}, kInput,
+                 {"minus.csv:2", "standard error is negative"});
   expect_refusal({"import", at("whole.dump"), "-o", at("o.h5")}, kUsage, {"--timestep", "whole.dump"});
-  expect_only({"cut.dump", "text.dump", "whole.dump"});
+  expect_only({"cut.dump", "minus.csv", "text.dump", "whole.dump"});
 }
 
 TEST_F(BadInput, RecordsOfTheDrive) {

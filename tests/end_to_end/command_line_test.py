@@ -72,7 +72,7 @@ def test_next_steps():
         (("info", "~/frames"), 3,
          "~/frames: does not exist; the shell expands ~ only at the beginning of a word and outside of quotes."),
         (("track", frames, "--cell", folder / "CELL.toml", "-o", out), 3,
-         f"{folder}/CELL.toml: the file does not exist; twincell new STACK -o {folder}/CELL.toml writes a cell file."),
+         f"{folder}/CELL.toml: the file does not exist; twincell new STACK -o {folder}/CELL.toml writes a cell file of this name."),
         (("analyze", scene), 3, f"; twincell simulate {scene} -o scene.h5 makes a trajectory of a scene."),
         (("analyze", frames), 3, f"; twincell track {frames} -o frames.h5 makes a trajectory of a stack of frames."),
         (("explain", frames), 3, "; explain reads a scene file (TOML); for a stack of frames see twincell new."),

@@ -95,4 +95,16 @@ TEST(Fit, ErrorsThatAreNoneAreSaid) {
   EXPECT_FALSE(document["parameters"]["c"].contains("interval"));
 }
 
+TEST(Fit, ALawThatMissesThePointsIsNoted) {
+  const TemporaryFolder folder;
+  put_file(folder / "scatter.csv",
+           "x,y,s\n1,5,.001\n2,1,.001\n3,9,.001\n4,2,.001\n5,7,.001\n6,1,.001\n7,8,.001\n");
+  const Ran bad = run_program({"fit", folder / "scatter.csv", "--law", "line", "--sigma", "s"});
+  EXPECT_EQ(bad.code, 0) << bad.err;
+  EXPECT_NE(bad.out.find("misses the points by more than their stated errors"), std::string::npos) << bad.out;
+  put_file(folder / "good.csv", "x,y,s\n1,1.1,.1\n2,1.9,.1\n3,3.05,.1\n4,4,.1\n5,4.9,.1\n");
+  const Ran good = run_program({"fit", folder / "good.csv", "--law", "line", "--sigma", "s"});
+  EXPECT_EQ(good.out.find("misses the points"), std::string::npos) << good.out;
+}
+
 }  // namespace twincell

@@ -332,6 +332,81 @@ TEST(Match, TheCellFileOfAnotherStackIsRefused) {
   EXPECT_FALSE(fs::exists(folder / "twin/experiment.h5"));
 }
 
+/// The shipped cell with one line replaced.
+fs::path cell_with(const TemporaryFolder& folder, const std::string& key, const std::string& line_of_key) {
+  std::ifstream in(kStack / "CELL.toml");
+  fs::path path = folder / "changed.toml";
+  std::ofstream out(path);
+  for (std::string line; std::getline(in, line);)
+    out << (line.starts_with(key + " ") ? key + " = " + line_of_key : line) << "\n";
+  return path;
+}
+
+TEST(Match, WhatTheFilmContradictsIsRefusedBeforeTheTwins) {
+  const TemporaryFolder folder;
+  const auto refused = [&](const fs::path& cell, const std::vector<std::string>& more,
+                           const std::string& why) {
+    std::vector<std::string> words{"match", kStack, cell, "-o", folder / "twin", "--no-film", "-q"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Ran ran = run_program(words);
+    EXPECT_EQ(ran.code, 2) << ran.err;
+    EXPECT_NE(ran.err.find(why), std::string::npos) << ran.err;
+    EXPECT_FALSE(fs::exists(folder / "twin/simulation-1.h5"));
+  };
+  refused(cell_with(folder, "first_phase", "10"), {}, "shows the first frame at phase 0 of 20");
+  refused(cell_with(folder, "width", "1"), {}, "lie inside the cell of width 1");
+  refused(kStack / "CELL.toml", {"--discard", "50"}, "--discard: is 50, but ");
+}
+
+TEST(Match, ASecondMatchIntoAFolderMixesNothing) {
+  const TemporaryFolder folder;
+  const std::string twin = folder / "twin";
+  const auto match = [&](const std::string& twins) {
+    return run_program({"match", kStack, "-o", twin, "--twins", twins, "--no-film", "-q", "--set",
+                        "time.steps_per_contact=20"});
+  };
+  ASSERT_EQ(match("2").code, 0);
+  EXPECT_EQ(match("2").code, 0) << "the same again";
+  const Ran fewer = match("1");
+  EXPECT_EQ(fewer.code, 2);
+  EXPECT_NE(fewer.err.find("simulation-2.h5: it is a twin of an earlier match"), std::string::npos)
+      << fewer.err;
+  const Ran several =
+      run_program({"match", kStack, fs::path(TWINCELL_SOURCE_DIR) / "data_samples/demo/gamma-1.6", "-o", twin,
+                   "--no-film", "-q"});
+  EXPECT_EQ(several.code, 2);
+  EXPECT_NE(several.err.find("it holds the match of one stack"), std::string::npos) << several.err;
+  // What the user writes into the report or the scene stays, and is noticed before any work.
+  const std::string scene = read_text_file(fs::path(twin) / "scene.toml");
+  std::ofstream(fs::path(twin) / "scene.toml", std::ios::app) << "# my words\n";
+  const Ran changed = match("2");
+  EXPECT_EQ(changed.code, 2);
+  EXPECT_NE(changed.err.find("scene.toml: it has changed since twincell wrote it"), std::string::npos);
+  EXPECT_EQ(read_text_file(fs::path(twin) / "scene.toml"), scene + "# my words\n");
+  std::ofstream(fs::path(twin) / "scene.toml") << scene;
+  const auto before = fs::last_write_time(fs::path(twin) / "experiment.h5");
+  std::ofstream(fs::path(twin) / "report/report.html", std::ios::app) << "<!-- my words -->\n";
+  EXPECT_EQ(match("2").code, 2);
+  EXPECT_EQ(fs::last_write_time(fs::path(twin) / "experiment.h5"), before);
+}
+
+TEST(Match, AStackWithoutBeadsIsRefused) {
+  const TemporaryFolder folder;
+  const fs::path stack = folder / "blank";
+  fs::create_directory(stack);
+  for (int f = 0; f < 10; ++f)
+    cv::imwrite((stack / ("frame_" + std::to_string(f) + ".png")).string(),
+                cv::Mat(218, 160, CV_8U, cv::Scalar(128)));
+  for (const std::vector<std::string>& verb :
+       {std::vector<std::string>{"track", stack, "--cell", kStack / "CELL.toml", "-o", folder / "t.h5"},
+        std::vector<std::string>{"match", stack, kStack / "CELL.toml", "-o", folder / "twin"}}) {
+    const Ran ran = run_program(verb);
+    EXPECT_EQ(ran.code, 3) << ran.err;
+    EXPECT_NE(ran.err.find("No bead was located in any frame"), std::string::npos) << ran.err;
+  }
+  EXPECT_FALSE(fs::exists(folder / "t.h5"));
+}
+
 TEST(Match, AStatedDriveIsHeldAgainstTheBedWhereThePlateIsNotInThePicture) {
   for (const double gamma : {0.9, 1.6}) {
     const TemporaryFolder folder;

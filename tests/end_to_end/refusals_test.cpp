@@ -199,24 +199,26 @@ TEST_F(Refusals, Bounce) {
 
 TEST_F(Refusals, ContactNumbers) {
   const std::string n = "calibrate contacts numbers ";
-  expect({{n + "--restitution 1.5 --contact-time 0.1", kUsage, {"restitution", "1.5", "at most 1"}},
-          {n + "--restitution 0 --contact-time 0.1", kUsage, {"restitution", "greater than 0"}},
-          {n + "--restitution nan --contact-time 0.1", kUsage, {"--restitution", "'nan'"}},
-          {n + "--restitution 0.9 --contact-time 0", kUsage, {"contact time", "greater than 0"}},
-          {n + "--restitution 0.9", kUsage, {"exactly one of the two pairs"}},
-          {n + "--restitution 0.9 --contact-time 0.1 --k-n 3", kUsage, {"exactly one of the two pairs"}},
-          {n + "--k-n -1 --gamma-n 3", kUsage, {"--k-n", "above 0"}},
-          {n + "--k-n nan --gamma-n 3", kUsage, {"--k-n", "'nan'"}},
-          {n + "--k-n 1e6 --gamma-n -3", kUsage, {"--gamma-n", "0 or above"}},
-          {n + "--k-n 1e6 --gamma-n 100 --m-eff nan", kUsage, {"--m-eff", "'nan'"}},
-          {n + "--k-n 1e6 --gamma-n 100 --m-eff 0", kUsage, {"--m-eff", "above 0"}},
-          {"calibrate contacts collisions @t.h5 --gravity nan", kUsage, {"--gravity", "'nan'"}},
-          {"calibrate contacts collisions @t.h5 --least-speed nan", kUsage, {"--least-speed", "'nan'"}},
-          {"calibrate contacts collisions @t.h5 --least-speed -1", kUsage, {"--least-speed", "0 or above"}},
-          {"calibrate contacts collisions @t.h5 --shape cube", kUsage, {"--shape", "cube", "disc"}},
-          {"calibrate contacts collisions @s.toml", kInput, {"s.toml", "not an HDF5 file"}},
-          {"calibrate contacts collisions @noframes.h5", kInput, {"noframes.h5", "0 frames"}},
-          {"calibrate contacts collisions @nobeads.h5", kInput, {"nobeads.h5", "impacts"}}});
+  expect(
+      {{n + "--restitution 1.5 --contact-time 0.1", kUsage, {"restitution", "1.5", "at most 1"}},
+       {n + "--restitution 0 --contact-time 0.1", kUsage, {"restitution", "greater than 0"}},
+       {n + "--restitution nan --contact-time 0.1", kUsage, {"--restitution", "'nan'"}},
+       {n + "--restitution 0.9 --contact-time 0", kUsage, {"contact time", "greater than 0"}},
+       {n + "--restitution 0.9 --contact-time 1e-200", kUsage, {"--contact-time", "1e-200", "no stiffness"}},
+       {n + "--restitution 0.9", kUsage, {"exactly one of the two pairs"}},
+       {n + "--restitution 0.9 --contact-time 0.1 --k-n 3", kUsage, {"exactly one of the two pairs"}},
+       {n + "--k-n -1 --gamma-n 3", kUsage, {"--k-n", "above 0"}},
+       {n + "--k-n nan --gamma-n 3", kUsage, {"--k-n", "'nan'"}},
+       {n + "--k-n 1e6 --gamma-n -3", kUsage, {"--gamma-n", "0 or above"}},
+       {n + "--k-n 1e6 --gamma-n 100 --m-eff nan", kUsage, {"--m-eff", "'nan'"}},
+       {n + "--k-n 1e6 --gamma-n 100 --m-eff 0", kUsage, {"--m-eff", "above 0"}},
+       {"calibrate contacts collisions @t.h5 --gravity nan", kUsage, {"--gravity", "'nan'"}},
+       {"calibrate contacts collisions @t.h5 --least-speed nan", kUsage, {"--least-speed", "'nan'"}},
+       {"calibrate contacts collisions @t.h5 --least-speed -1", kUsage, {"--least-speed", "0 or above"}},
+       {"calibrate contacts collisions @t.h5 --shape cube", kUsage, {"--shape", "cube", "disc"}},
+       {"calibrate contacts collisions @s.toml", kInput, {"s.toml", "not an HDF5 file"}},
+       {"calibrate contacts collisions @noframes.h5", kInput, {"noframes.h5", "0 frames"}},
+       {"calibrate contacts collisions @nobeads.h5", kInput, {"nobeads.h5", "impacts"}}});
 }
 
 TEST_F(Refusals, Infer) {

@@ -146,6 +146,7 @@ class TableReader final : public PictureBeadsReader {
     row.bead.position = upright(Vec3(real("x", 0), real("y", 0), std::isfinite(z) ? z : 0));
     row.bead.velocity = upright(Vec3(real("vx", 0), real("vy", 0), real("vz", 0)));
     const Vec3 u(real("sigma_x", 0, true), real("sigma_y", 0, true), real("sigma_z", 0, true));
+    if (u.minCoeff() < 0) fail_at(number, "a standard error is negative.");
     row.bead.uncertainty = upright(u).cwiseAbs();  // has no direction
     row.bead.radius = real("radius", 0.5 * real("diameter", 0));
     if (has_.radius && !(row.bead.radius > 0)) fail_at(number, "a bead has no size.");

@@ -20,10 +20,10 @@ namespace {
   throw ConfigError({"", 0, 0, option}, why);
 }
 
-/// Median over some beads of the distance to the nearest other bead; 0 for fewer than two beads.
+/// Median over some beads of the distance to the nearest other bead; NaN for fewer than two beads.
 double median_spacing(const std::vector<SnapshotBead>& beads) {
   constexpr std::size_t kMost = 100;
-  if (beads.size() < 2) return 0;
+  if (beads.size() < 2) return std::nan("");
   std::vector<double> nearest;
   const std::size_t stride = std::max<std::size_t>(1, beads.size() / kMost);
   for (std::size_t i = 0; i < beads.size(); i += stride) {

@@ -55,7 +55,7 @@ class ForeignTrajectory {
   [[nodiscard]] bool is_flat() const;
   /// Whether the times that the file states differ from those of the time step, which replace them.
   [[nodiscard]] bool replaces_times() const;
-  /// Median distance of a bead from its nearest neighbour in the first frame, sigma; 0 for fewer than two.
+  /// Median distance of a bead from its nearest neighbour in the first frame, sigma; NaN for fewer than two.
   [[nodiscard]] double spacing() const;
   /// Number of beads of the first frame whose centres lie beside the cell, beyond its side walls.
   [[nodiscard]] std::size_t n_beyond() const;

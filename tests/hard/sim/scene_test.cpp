@@ -238,6 +238,8 @@ TEST(Beads, CountOrLayers) {
                    "beads.layers: contradicts 'count'");
   expect_complaint("[beads]\nlayers = 9e5\n[cell]\nwidth = 1e5\n",
                    "beads.layers: 900000 layers are 9e+10 beads, the bound is 10000000");
+  expect_complaint("[beads]\nlayers = 0.04\n[cell]\nwidth = 10\n",
+                   "beads.layers: 0.04 layers are less than one bead");
 }
 
 TEST(Beads, SpreadNeedsAWidth) {

@@ -2,6 +2,7 @@
 // the simulator.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <random>
@@ -156,6 +157,40 @@ TEST(Bounce, NoNoiseAndAPlateThatOvertakesFlights) {
   EXPECT_GE(fit.impacts.size(), 2U);
   for (const BounceImpact& impact : fit.impacts) EXPECT_NEAR(impact.restitution, 0.85, 1e-3) << impact.time;
   EXPECT_NEAR(fit.gravity, 1, 1e-4);
+}
+
+// Most records go on after the bead has come to rest, and many begin while it is held.
+TEST(Bounce, ABeadThatRestsOrIsHeldDoesNotFly) {
+  std::mt19937_64 generator(7);
+  std::normal_distribution<double> noise(0, 0.005);
+  const Film film;
+  for (const bool held : {false, true}) {
+    std::vector<BounceSample> samples = bounce(film, generator);
+    const double first = samples.front().time, height = samples.front().height;
+    if (held)
+      for (int i = 1; i <= 200; ++i) samples.push_back({first - film.dt * i, height + noise(generator)});
+    else
+      for (int i = 1; i <= 400; ++i)
+        samples.push_back({samples.back().time + film.dt, 0.5 + noise(generator)});
+    const BounceFit fit = fit_bounces(std::move(samples));
+    EXPECT_NEAR(fit.restitution, film.e, 4 * fit.restitution_error) << (held ? "held" : "at rest");
+    EXPECT_LT(fit.restitution_error, 0.01);
+    EXPECT_NEAR(fit.gravity, 1, 5 * fit.gravity_error);
+    EXPECT_EQ(fit.impacts.size(), 3U);
+  }
+}
+
+TEST(Bounce, WhatIsNoBounceIsRefused) {
+  std::mt19937_64 generator(3);
+  std::normal_distribution<double> normal;
+  std::vector<BounceSample> scatter, upside_down = bounce({}, generator);
+  for (int i = 0; i < 450; ++i) scatter.push_back({0.02 * i, normal(generator)});
+  for (BounceSample& q : upside_down) q.height = -q.height;
+  EXPECT_THROW(fit_bounces(scatter), InputError);
+  EXPECT_THROW(fit_bounces(upside_down), InputError);
+  EXPECT_THROW(fit_bounces(bounce({.e = 1.05, .drop = 1}, generator)), InputError) << "gains energy";
+  EXPECT_THROW(fit_bounces(bounce({}, generator), {.gravity = 1000.0, .drag = true, .plate = {}}), InputError)
+      << "gravity in another unit";
 }
 
 TEST(Bounce, WhatCannotBeFitted) {
@@ -350,6 +385,24 @@ TEST(Inference, AnOnsetIsTheDriveAtWhichALevelIsCrossed) {
   EXPECT_LE(error, 1.5 * std::hypot(0.03, 0.05 / 4));
   EXPECT_GE(error, 0.9 * std::hypot(0.03, 0.05 / 4));
   EXPECT_NEAR(slope, 4, 0.05);
+}
+
+// One onset and one parameter leave no freedom, but an onset that no value of the parameter gives is seen.
+TEST(Inference, AnOnsetOutOfReachIsNoted) {
+  const std::vector<Sought> sought = {{"e", 0.4, 1.2}};
+  const Sought drive{"drive.gamma", 1.5, 2.1};
+  std::vector<SimulatedPoint> runs;
+  for (const auto& p : spread_points({sought[0], drive}, 30))
+    runs.push_back({{p[0]}, {4 * (p[1] - 1 - p[0])}, {p[1]}});
+  const auto notes_at = [&](double onset) {
+    return infer_parameters(sought, runs, {{"onset", 0, 0, Condition{drive, onset, 0.03}}}).notes;
+  };
+  const auto is_out = [](const std::string& note) {
+    return note.starts_with("no parameters in the search range");
+  };
+  const auto far = notes_at(3), within = notes_at(1.8);
+  EXPECT_TRUE(std::any_of(far.begin(), far.end(), is_out));
+  EXPECT_FALSE(std::any_of(within.begin(), within.end(), is_out));
 }
 
 TEST(Inference, AsFewRunsAsASurfaceNeedsAreEnough) {

@@ -93,4 +93,21 @@ TEST(SweepResults, AnythingElseIsRefused) {
   }
 }
 
+TEST(SweepResults, ASweepCountsOnceAndHasAPlaceInTheDiagram) {
+  const TemporaryFolder folder;
+  put_file(folder / "a.json", kResults);
+  put_file(folder / "b.json", kResults);
+  put_file(folder / "none.json", R"({"format": "twincell sweep 1", "plan": "", "points":
+            [{"id": "w", "conditions": {"n_l": null, "gamma": null, "start": "table"},
+              "results": {"phase": {"value": "bouncing"}}}]})");
+  analysis::Comparison c;
+  expect_refusal<ConfigError>(
+      [&] {
+        add_sweeps({folder / "a.json", folder / "b.json"}, c);
+      },
+      "a.json and ", "hold the same points; name the sweep once");
+  expect_refusal<InputError>([&] { add_sweep(folder / "none.json", c); },
+                             "no point of the sweep has a place in the diagram", "results of its plan");
+}
+
 }  // namespace twincell::twin
