@@ -63,6 +63,9 @@ std::string advice_on_missing(const std::string& verb, const std::string& word) 
 std::string advice_on_kind(const std::string& verb, const std::string& word) {
   std::error_code error;
   const std::string extension = fs::path(word).extension().string();
+  if (verb == "compare" && (extension == ".toml" || extension == ".sweep"))
+    return "twincell simulate makes a trajectory of a scene, and twincell sweep collect the results of a "
+           "sweep";
   if (is_one_of(verb, kReadTrajectories)) {
     if (fs::is_directory(word, error))
       return fmt::format("twincell track {} -o {} makes a trajectory of a stack of frames", shell_word(word),

@@ -433,6 +433,17 @@ void run_infer(const InferFlags& o, const Common& common) {
   if (sought.size() > 3)
     throw ConfigError({.file = {}, .key = "--vary"},
                       fmt::format("names {} parameters; at most 3 can be inferred.", sought.size()));
+  for (std::size_t k = 0; k < sought.size(); ++k)
+    for (const double end : {sought[k].lower, sought[k].upper}) {
+      std::vector<std::string> all = o.assignments;
+      all.push_back(fmt::format("{}={:.9g}", sought[k].name, end));
+      try {
+        (void)sim::read_scene(o.scene, all);
+      } catch (const ConfigError& e) {
+        throw ConfigError({.file = {}, .key = "--vary"},
+                          fmt::format("'{}': with {:g} the scene is refused: {}", o.vary[k], end, e.what()));
+      }
+    }
   std::vector<MeasuredOnset> onsets;
   for (const std::string& said : o.onsets) {
     onsets.push_back(onset_of(said));

@@ -165,8 +165,8 @@ std::string barrier_label(const char* of, const std::optional<calibration::Curve
 
 /// A panel of the figure: counted slips, upper limits where the bed bounces, borders of the regions,
 /// Arrhenius lines. \param index of the panel; its two data blocks are appended to `data`
-std::string panel_of(const StrengthSweep& l, int layers, std::size_t index, const Barriers& fits,
-                     const analysis::figure_style::Axis& p_s, std::string& data) {
+std::string panel_of(const StrengthSweep& l, int layers, const std::string& figure, std::size_t index,
+                     const Barriers& fits, const analysis::figure_style::Axis& p_s, std::string& data) {
   analysis::figure_style::Axis inverse{.label = "1/K_m", .low = 0};
   std::string counted, none;
   const double floor = p_s.with_margin().low;
@@ -216,7 +216,7 @@ std::string panel_of(const StrengthSweep& l, int layers, std::size_t index, cons
   std::string clauses = "NaN notitle";
   const auto points = [&](const std::string& block, std::size_t which, const char* drawn, int symbol) {
     if (!block.empty())
-      clauses += fmt::format(", 'p1-fig5.dat' index {} using {} pt {} lc rgb '{}' notitle", which, drawn,
+      clauses += fmt::format(", '{}.dat' index {} using {} pt {} lc rgb '{}' notitle", figure, which, drawn,
                              symbol, colour_of(l));
   };
   points(counted, 2 * index, "1:2:3:4 with yerrorbars", symbol_of(l));
@@ -224,9 +224,19 @@ std::string panel_of(const StrengthSweep& l, int layers, std::size_t index, cons
   return plot + fmt::format("plot {}{}\n", clauses, lines);
 }
 
-analysis::Figure figure_of(const StrengthSweeps& all) {
+Reproduction run(const Request& request) {
+  const StrengthSweeps all = strength_sweeps(request);
+  Reproduction r = reproduction_of(all, "Fortini & Huang 2015, Fig. 5: slip probability against 1/K_m");
+  r.targets = targets_at_heights(all, slip_targets);
+  r.figures = {slip_figure("p1-fig5", all)};
+  return r;
+}
+
+}  // namespace
+
+analysis::Figure slip_figure(const std::string& name, const StrengthSweeps& all) {
   const int rows = static_cast<int>(all.heights.size());
-  analysis::Figure f{.name = "p1-fig5", .title = "Slip probability", .width = 720, .height = 60 + 370 * rows};
+  analysis::Figure f{.name = name, .title = "Slip probability", .width = 720, .height = 60 + 370 * rows};
   const analysis::figure_style::Panels panels(all.heights.size(), 2, f.width, f.height, 2);
   f.plot = analysis::figure_style::Panels::begin();
   analysis::figure_style::Axis p_s{.label = "p_s", .logarithmic = true};
@@ -240,7 +250,7 @@ analysis::Figure figure_of(const StrengthSweeps& all) {
   for (const HeightSweeps& height : all.heights) {
     const Barriers fits = barriers_of(height);
     for (const StrengthSweep* l : {&height.random, &height.crystal}) {
-      f.plot += panels.panel(index) + panel_of(*l, height.layers, index, fits, p_s, f.data);
+      f.plot += panels.panel(index) + panel_of(*l, height.layers, name, index, fits, p_s, f.data);
       ++index;
     }
   }
@@ -258,16 +268,6 @@ analysis::Figure figure_of(const StrengthSweeps& all) {
       "of Fig. 4. Form of Fortini & Huang 2015, Fig. 5.";
   return f;
 }
-
-Reproduction run(const Request& request) {
-  const StrengthSweeps all = strength_sweeps(request);
-  Reproduction r = reproduction_of(all, "Fortini & Huang 2015, Fig. 5: slip probability against 1/K_m");
-  r.targets = targets_at_heights(all, slip_targets);
-  r.figures = {figure_of(all)};
-  return r;
-}
-
-}  // namespace
 
 std::vector<Target> slip_targets(const HeightSweeps& sweeps) {
   return targets_of(sweeps, barriers_of(sweeps));

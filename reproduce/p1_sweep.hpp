@@ -85,6 +85,8 @@ StrengthSweeps strength_sweeps(const Request& request, const std::string& keys =
 /// Targets of Fig. 4 and of Fig. 5 at one height; the same ones in the same order for each height.
 std::vector<Target> temperature_targets(const HeightSweeps& sweeps);
 std::vector<Target> slip_targets(const HeightSweeps& sweeps);
+/// Fig. 5: slip probability against 1/K_m, one row of panels for each height.
+analysis::Figure slip_figure(const std::string& name, const StrengthSweeps& all);
 
 /// Index of the height whose verdicts count. Both figures of the paper show one bed, so their targets are
 /// held against one height: the one that meets most of them (pass or consistent), then the one that fails

@@ -52,6 +52,9 @@ Reproduction run(const Request& request) {
     const StrengthSweeps sweeps = strength_sweeps(one, keys, 1.0 / kRules.size());
     const Reproduction of_rule = reproduction_of(sweeps, "");
     measured[rule.word] = nlohmann::json::parse(of_rule.measured);
+    analysis::Figure figure = slip_figure(fmt::format("p1-truncate-{}", rule.word), sweeps);
+    figure.caption = fmt::format("With {}. {}", rule.name, figure.caption);
+    r.figures.push_back(std::move(figure));
     int good = 0, bad = 0, undecided = 0;
     for (const Target& t : targets_of(rule, sweeps)) {
       good += t.verdict == Verdict::pass || t.verdict == Verdict::consistent ? 1 : 0;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <opencv2/core.hpp>
 
 #include "analysis/runs/pooling.hpp"
 #include "core/atomic_file.hpp"
@@ -117,14 +116,13 @@ fs::path stack_behind(const ComparingOptions& options, const TrajectorySource& t
 /// \throws ConfigError if the frames of a stack do not have the size of those that were tracked
 void require_size(const fs::path& stack, const analysis::PictureFrame& camera,
                   const std::string& experiment) {
-  cv::Mat first;
-  if (!imaging::open_frames(stack)->next(first) || first.empty()) return;
-  if (first.cols == camera.width && first.rows == camera.height) return;
+  const auto [width, height] = imaging::size_of_frames(*imaging::open_frames(stack));
+  if (width == 0 || (width == camera.width && height == camera.height)) return;
   throw ConfigError(
       {.file = {}, .key = "--stack"},
       fmt::format("frames of {} are {} x {} px, those in which {} was tracked {} x {} px; name its own "
                   "stack.",
-                  stack.string(), first.cols, first.rows, experiment, camera.width, camera.height));
+                  stack.string(), width, height, experiment, camera.width, camera.height));
 }
 
 /// Adds the camera's scale and the frames at the snapshots of an experiment.

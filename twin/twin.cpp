@@ -33,11 +33,12 @@ constexpr double kLargestShift = 0.01;
 /// First line of a generated scene, which allows a later run to replace the file.
 const char* const kSceneHead = "# The scene of a filmed cell, by twincell match.\n";
 
+constexpr std::string_view kChecksum = "# SHA-256 of the lines below begins with ";
 /// Second line of a generated scene: the checksum of the lines below, which shows whether somebody changed
 /// them.
 std::string checksum_line(const std::string& below) {
   constexpr std::size_t kDigits = 16;
-  return "# SHA-256 of the lines below begins with " + sha256_of_text(below).substr(0, kDigits) + "\n";
+  return std::string(kChecksum) + sha256_of_text(below).substr(0, kDigits) + "\n";
 }
 
 /// \throws ConfigError if the folder holds what a match into it would lose or mix with its own results
@@ -47,7 +48,8 @@ void require_room(const fs::path& folder, int twins) {
   if (const fs::path scene = folder / "scene.toml"; fs::is_regular_file(scene, ec)) {
     const std::string text = read_text_file(scene);
     const std::size_t line = text.starts_with(head) ? text.find('\n', head.size()) : std::string::npos;
-    if (line != std::string::npos &&
+    // Versions before 0.2 wrote no checksum.
+    if (line != std::string::npos && text.compare(head.size(), kChecksum.size(), kChecksum) == 0 &&
         text.substr(head.size(), line + 1 - head.size()) != checksum_line(text.substr(line + 1)))
       throw ConfigError({.file = scene.string()},
                         "it has changed since twincell wrote it; move it, or name a new folder.");

@@ -133,6 +133,15 @@ std::optional<double> resting_height(const TrajectoryInfo& info, const Frame& fr
     why_not = plate ? "the first frame holds no bead" : "the plate's height is not known";
     return std::nullopt;
   }
+  if (frame.time > 0 && info.conditions.gamma && *info.conditions.gamma > 1) {
+    why_not = fmt::format(
+        "the file begins {:.3g} t0 after the drive has begun, at Gamma = {:.3g}, when the bed no longer lies "
+        "as it did "
+        "at rest; "
+        "analyse a file without time.discard, or state --rest-height",
+        frame.time, *info.conditions.gamma);
+    return std::nullopt;
+  }
   if (frame.velocity.empty()) {
     why_not = "the trajectory has no velocities that show whether the bed is at rest in its first frame";
     return std::nullopt;

@@ -318,7 +318,7 @@ void add_phases(DriveFit& lock, std::size_t n_frames) {
   } else {
     lock.notes.push_back(fmt::format(
         "the period of {:.5g} frames is not a whole number: phases drift by {:.2g} frames over the "
-        "stack. Pass the list of --phases to track --phase-lock",
+        "stack. calibrate plate --phases LIST.csv writes them for track --phase-lock LIST.csv",
         lock.period, drift));
   }
 }
@@ -384,8 +384,8 @@ void repair_frames(const std::vector<double>& heights, int frames_per_cycle, Tim
   constexpr double kMuch = 0.05;  // of A
   if (scatters(now.attempt, kMuch))
     lock.notes.push_back(
-        fmt::format("the heights scatter by {:.2g} of A about a sine: frames may be missing; "
-                    "state --frames-per-cycle",
+        fmt::format("the heights scatter by {:.2g} of A about a sine: frames may be missing, or the "
+                    "drive changes; calibrate plate takes --frames-per-cycle, which shows missing frames",
                     now.attempt.scatter.at(0) / now.attempt.fitted.report.values[1]));
 }
 

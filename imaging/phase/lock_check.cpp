@@ -53,6 +53,15 @@ bool by_plate(PhaseTable& table, const PhaseLock& lock, std::span<const double> 
                        reading.other->period,
                        static_cast<std::int64_t>(std::llround(
                            0.5 / std::abs(table.frames_per_cycle / reading.other->period - 1)))));
+  if (!reading.changes.empty()) {
+    // The bed, which changes with the plate, cannot tell lost frames from the change.
+    table.warning = fmt::format(
+        "the plate {}, so that the film shows more than one strength of the drive; track the parts one by "
+        "one "
+        "(--frames A:B); the phases are those that are stated",
+        reading.changes);
+    return true;
+  }
   if (!reading.slips) {
     why_not = reading.why_not;
     return false;

@@ -34,6 +34,25 @@ double cost(const SineSlips& fit) {
   return cost(fit.ticks.size(), fit.scatter, fit.amplitude, number_of_slips(fit));
 }
 
+/// How the motion of a plate that follows no single sine differs between begin and end, each of which does
+/// follow one; empty if it does not.
+std::string change_of(std::span<const double> plate, int frames_per_cycle) {
+  constexpr std::size_t kCycles = 3;
+  constexpr double kAlike = 0.1;
+  const std::size_t part = std::min(plate.size() / 2, kCycles * static_cast<std::size_t>(frames_per_cycle));
+  if (part < static_cast<std::size_t>(frames_per_cycle)) return {};
+  const auto begin = fit_sine_with_slips(plate.first(part), frames_per_cycle),
+             end = fit_sine_with_slips(plate.last(part), frames_per_cycle);
+  const auto is_clear = [](const auto& fit) {
+    return fit && moves(fit->amplitude, fit->scatter) && fit->dropped + fit->doubled == 0;
+  };
+  if (!is_clear(begin) || !is_clear(end)) return {};
+  if (std::abs(begin->amplitude - end->amplitude) <= kAlike * std::max(begin->amplitude, end->amplitude))
+    return {};
+  return fmt::format("moves by {:.3g} px in the first {} frames and by {:.3g} px in the last {}",
+                     begin->amplitude, part, end->amplitude, part);
+}
+
 /// read_plate() with the sine of any period. \param free_sine gives it; called where it is needed
 template <class FreeSineSource>
 PlateReading read(std::span<const double> plate, int frames_per_cycle, const FreeSineSource& free_sine) {
@@ -65,6 +84,8 @@ PlateReading read(std::span<const double> plate, int frames_per_cycle, const Fre
   }
   if (fits)
     out.slips = std::move(fit);
+  else if (const std::string changes = change_of(plate, frames_per_cycle); !changes.empty())
+    out.changes = changes;
   else
     out.why_not = "no edge at the bottom of the picture moves as a plate";
   return out;

@@ -16,6 +16,7 @@ struct PlateReading {
   std::optional<SineSlips>
       slips;  ///< its sine, with missing and doubled frames; absent: the plate cannot tell
   std::optional<FreeSine> other;  ///< a sine of another period that explains the heights better
+  std::string changes;            ///< how the motion changes during the film, if it does
   std::string why_not;            ///< why the plate cannot tell
 
   [[nodiscard]] bool fits() const { return slips && !other; }

@@ -26,6 +26,12 @@ cv::Mat without_lens(const cv::Mat& picture, double rotation_deg, double distort
 
 }  // namespace
 
+std::array<int, 2> size_of_frames(FrameSource& stack) {
+  cv::Mat first;
+  if (!stack.next(first)) return {0, 0};
+  return {first.cols, first.rows};
+}
+
 std::vector<std::string> picture_frames(FrameSource& stack, const std::vector<std::int64_t>& numbers,
                                         int longest, double rotation_deg, double distortion) {
   std::vector<std::string> pictures(numbers.size());

@@ -2,6 +2,7 @@
 /// \file
 /// Selected frames of a stack as small pictures, for a report.
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -9,6 +10,10 @@
 #include "imaging/stack/frame_source.hpp"
 
 namespace twincell::imaging {
+
+/// Width and height of the frames of a stack, px; 0 and 0 without frames. Reads the first frame.
+/// \throws InputError as FrameSource
+std::array<int, 2> size_of_frames(FrameSource& stack);
 
 /// The bytes of an 8-bit PNG for each of `numbers` (frame numbers from 0, ascending); empty for a number
 /// beyond the end of the stack. Frames of more than 8 bits are scaled by the largest value of the first

@@ -44,11 +44,11 @@ void require_some_inside(const CellDescription& cell, std::size_t inside, std::s
   throw ConfigError(
       Where{.file = {}, .key = "camera.origin_px"},
       fmt::format(
-          "is {:g}, {:g}, but {} of the {} located beads lie inside the cell{}{}; correct the origin, "
+          "is {:g}, {:g}, but {} the {} located beads {} inside the cell{}{}; correct the origin, "
           "camera.pixels_per_sigma = {:g}, or the size of the cell, or select a part of the picture (--roi).",
           cell.origin->x_px, cell.origin->y_px,
-          inside == 0 ? std::string("none") : fmt::format("only {}", inside), inside + outside,
-          cell.width ? fmt::format(" of width {:g}", *cell.width) : "",
+          inside == 0 ? std::string("none of") : fmt::format("only {} of", inside), inside + outside,
+          inside == 0 ? "lies" : "lie", cell.width ? fmt::format(" of width {:g}", *cell.width) : "",
           cell.height ? fmt::format(" and height {:g}", *cell.height) : "", *cell.pixels_per_sigma));
 }
 

@@ -187,7 +187,7 @@ TEST_F(BadInput, RecordsOfTheDrive) {
   refused(rows + "80.0,nan\n", kInput, {"trace.csv", "position_sigma", "row 401 has no number"});
   refused(rows + "79.0,0.1\n", kInput, {"trace.csv", "time_t0", "row 401 is not later"});
   refused(rows + "90.0,0.1\n", kInput, {"trace.csv", "rows are missing"});
-  refused(rows + "80.0\n", kInput, {"trace.csv:402", "1 fields"});
+  refused(rows + "80.0\n", kInput, {"trace.csv:402", "1 field"});
   refused(rows, kUsage, {"s.toml:5", "drive.file", "trace.csv lasts 12.7 cycles", "the run needs 210"});
   refused(std::string(100, '\0'), kInput, {"trace.csv", "zero bytes"});
   fs::remove(at("trace.csv"));

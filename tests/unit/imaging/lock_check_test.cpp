@@ -143,10 +143,31 @@ TEST(LockCheck, AnotherPeriodIsRefusedWithTheFrameAndTheCure) {
 }
 
 TEST(LockCheck, AnotherFirstPhaseIsNamed) {
-  const PhaseTable table =
-      check_lock({20, 3}, {.plate_px = plate_of({.first_phase = 9, .drop = {}}, 1), .times_s = {}});
-  EXPECT_NE(table.warning.find("at phase 9 of 20, but the stated first phase is 3"), std::string::npos)
-      << table.warning;
+  const std::vector<double> plate = plate_of({.first_phase = 9, .drop = {}}, 1);
+  const PhaseTable near = check_lock({20, 8}, {.plate_px = plate, .times_s = {}});
+  EXPECT_NE(near.warning.find("at phase 9 of 20, but the stated first phase is 8"), std::string::npos)
+      << near.warning;
+  try {
+    (void)check_lock({20, 3}, {.plate_px = plate, .times_s = {}});
+    FAIL() << "accepted";
+  } catch (const ConfigError& e) {
+    const std::string said = e.what();
+    EXPECT_NE(
+        said.find("first_phase: is 3, but the plate in the frames shows the first frame at phase 9 of 20"),
+        std::string::npos)
+        << said;
+  }
+}
+
+TEST(LockCheck, AFilmOfTwoStrengthsIsNoFilmWithLostFrames) {
+  std::vector<double> plate = plate_of({.frames = 60, .drop = {}}, 1);
+  const std::vector<double> weaker = plate_of({.frames = 60, .amplitude = 7, .drop = {}}, 2);
+  plate.insert(plate.end(), weaker.begin(), weaker.end());
+  PhaseTable table = check_lock({20, 0}, {.plate_px = plate, .times_s = {}});
+  EXPECT_EQ(table.dropped + table.doubled, 0);
+  EXPECT_TRUE(table.frames.empty());
+  EXPECT_NE(table.warning.find("px in the first 60 frames and by"), std::string::npos) << table.warning;
+  EXPECT_TRUE(table.not_checked.empty()) << "the bed must not correct the phases";
 }
 
 TEST(LockCheck, TimeStampsShowGapsWhereThereIsNoPlate) {
