@@ -57,8 +57,7 @@ bool by_plate(PhaseTable& table, const PhaseLock& lock, std::span<const double> 
     // The bed, which changes with the plate, cannot tell lost frames from the change.
     table.warning = fmt::format(
         "the plate {}, so that the film shows more than one strength of the drive; track the parts one by "
-        "one "
-        "(--frames A:B); the phases are those that are stated",
+        "one (--frames A:B); the phases are those that are stated",
         reading.changes);
     return true;
   }
