@@ -69,19 +69,18 @@ std::vector<calibration::BounceSample> samples_of(const BounceFlags& o, std::opt
   return samples;
 }
 
-/// In a trajectory g is the unit of acceleration. \returns a note if the flights show another one
-/// \throws InputError if it is far from 1
-std::vector<std::string> check_unit_gravity(const std::string& source, const calibration::BounceFit& fit) {
+/// In a trajectory g is the unit of acceleration. \returns a note if the flights show another one, otherwise
+/// nothing \throws InputError if it is far from 1
+std::string check_unit_gravity(const std::string& source, const calibration::BounceFit& fit) {
   constexpr double kClear = 5, kOff = 0.01, kFar = 0.05;  // standard errors; of g
   const double off = std::abs(fit.gravity - 1);
   if (off < kOff || off < kClear * fit.gravity_error) return {};
-  std::string why = fmt::format(
+  const std::string why = fmt::format(
       "the best gravity is {:.4g} +- {:.1g}, where it is 1 in a trajectory: the bead may touch others "
-      "between its "
-      "impacts (--bead selects one), or the scale or the frame rate is wrong",
+      "between its impacts (--bead selects one), or the scale or the frame rate is wrong",
       fit.gravity, fit.gravity_error);
   if (off > kFar) throw InputError({.file = source, .key = {}}, why + ".");
-  return {why};
+  return why;
 }
 
 void run_bounce(const BounceFlags& o, const Common& common) {
@@ -113,7 +112,7 @@ void run_bounce(const BounceFlags& o, const Common& common) {
     throw InputError({.file = o.source, .key = {}}, e.what());
   }
   if (is_trajectory(o.source) && !o.gravity)
-    for (std::string& why : check_unit_gravity(o.source, fit)) fit.notes.push_back(std::move(why));
+    if (const std::string why = check_unit_gravity(o.source, fit); !why.empty()) fit.notes.push_back(why);
   CalibrationResult out;
   out.notes = fit.notes;
   out.measured.push_back({.name = "contact.wall.restitution",
@@ -261,8 +260,7 @@ void run_numbers(const NumberFlags& o, const Common& common) {
   if (!std::isfinite(t_c))
     text = fmt::format(
         "The contact is overdamped, because gamma_n is at least 2 sqrt(k_n/m_eff) = {:.8g}/t0: beads that "
-        "touch "
-        "never separate, so there is no t_c.\n",
+        "touch never separate, so there is no t_c.\n",
         2 * std::sqrt(s.k_n / o.m_eff));
   print_result(
       common, d,

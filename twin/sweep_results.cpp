@@ -89,13 +89,16 @@ void add_onsets(const JsonView& document, analysis::Comparison& comparison) {
   }
 }
 
-}  // namespace
-
-void add_sweep(const fs::path& file, analysis::Comparison& comparison) {
-  const JsonView document = JsonView::parse(read_text_file(file), file.string());
+/// The collected results in a file. \throws InputError if it holds something else
+JsonView read_results(const fs::path& file) {
+  JsonView document = JsonView::parse(read_text_file(file), file.string());
   if (!document.value().is_object() || document.value().value("format", json()) != "twincell sweep 1")
     throw InputError({.file = file.string()},
                      "is not a sweep's collected results (\"format\": \"twincell sweep 1\").");
+  return document;
+}
+
+void add_results(const JsonView& document, const fs::path& file, analysis::Comparison& comparison) {
   const std::size_t before = comparison.sweep.size() + comparison.boundaries.size();
   add_points(document, comparison);
   add_onsets(document, comparison);
@@ -106,18 +109,22 @@ void add_sweep(const fs::path& file, analysis::Comparison& comparison) {
         "add \"phase\" to the results of its plan.");
 }
 
+}  // namespace
+
+void add_sweep(const fs::path& file, analysis::Comparison& comparison) {
+  add_results(read_results(file), file, comparison);
+}
+
 void add_sweeps(const std::vector<fs::path>& files, analysis::Comparison& comparison) {
-  std::map<std::string, fs::path> known;
+  std::map<std::string, fs::path> known;  // by the points, as text
   for (const fs::path& file : files) {
-    const std::string text = read_text_file(file);
-    const json document = json::parse(text, nullptr, false);
-    const std::string points = document.is_object() ? document.value("points", json()).dump() : text;
-    const auto [same, is_new] = known.try_emplace(points, file);
+    const JsonView document = read_results(file);
+    const auto [same, is_new] = known.try_emplace(document.value().value("points", json()).dump(), file);
     if (!is_new)
       throw ConfigError({.file = {}, .key = "--sweep"},
                         fmt::format("{} and {} hold the same points; name the sweep once.",
                                     same->second.string(), file.string()));
-    add_sweep(file, comparison);
+    add_results(document, file, comparison);
   }
 }
 

@@ -136,9 +136,7 @@ std::optional<double> resting_height(const TrajectoryInfo& info, const Frame& fr
   if (frame.time > 0 && info.conditions.gamma && *info.conditions.gamma > 1) {
     why_not = fmt::format(
         "the file begins {:.3g} t0 after the drive has begun, at Gamma = {:.3g}, when the bed no longer lies "
-        "as it did "
-        "at rest; "
-        "analyse a file without time.discard, or state --rest-height",
+        "as it did at rest; analyse a file without time.discard, or state --rest-height",
         frame.time, *info.conditions.gamma);
     return std::nullopt;
   }

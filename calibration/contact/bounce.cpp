@@ -111,13 +111,26 @@ std::vector<const BounceSample*> between(const std::vector<BounceSample>& s, dou
   return in;
 }
 
-/// Lower limit of the noise: simulated heights scatter by rounding only, which differs between the two halves
-/// of a flight.
-constexpr double kFinest = 1e-5;  // of the span of the heights
-double finest_of(const std::vector<BounceSample>& s) {
+/// Largest less smallest height.
+double span_of(const std::vector<BounceSample>& s) {
   const auto [low, high] = std::minmax_element(
       s.begin(), s.end(), [](const auto& a, const auto& b) { return a.height < b.height; });
-  return kFinest * (high->height - low->height);
+  return high->height - low->height;
+}
+
+/// Noise of the film from the residuals of all intervals, of which the lower third is free of impacts.
+/// Simulated heights scatter by rounding only, which differs between the two halves of a flight: hence the
+/// lower limit.
+double noise_of(std::vector<double> residuals, const std::vector<BounceSample>& s) {
+  constexpr double kFinest = 1e-5;  // of the span of the heights
+  std::sort(residuals.begin(), residuals.end());
+  return std::max(residuals[residuals.size() / 3], kFinest * span_of(s));
+}
+
+/// Robust standard deviation of residuals, at least 1e-12.
+double scale_of(std::vector<double> r) {
+  for (double& x : r) x = std::abs(x);
+  return std::max(1.4826 * upper_median(std::move(r)), 1e-12);
 }
 
 /// Scatter of neighbouring heights about a smooth curve, from third differences: impacts are too few to show.
@@ -125,8 +138,8 @@ double scatter_of(const std::vector<BounceSample>& s) {
   constexpr double kOfThird = 4.4721359549995796;  // sqrt(1 + 9 + 9 + 1), of independent errors of 1
   std::vector<double> third;
   for (std::size_t i = 0; i + 3 < s.size(); ++i)
-    third.push_back(std::abs(s[i + 3].height - 3 * s[i + 2].height + 3 * s[i + 1].height - s[i].height));
-  return 1.4826 * upper_median(std::move(third)) / kOfThird;
+    third.push_back(s[i + 3].height - 3 * s[i + 2].height + 3 * s[i + 1].height - s[i].height);
+  return scale_of(std::move(third)) / kOfThird;
 }
 
 /// Times at which the height above the plate, after a median filter against single outliers, turns from
@@ -174,14 +187,12 @@ std::vector<double> rough_impacts(const std::vector<BounceSample>& s, const Plat
     const auto in = between(s, begin, end);
     return in.size() < 4 ? 0.0 : least_absolute(in, 0.5 * (begin + end)).median_residual;
   };
-  // The lower third of the residuals of all intervals gives the noise of the film.
   std::vector<double> own;
   for (std::size_t i = 0; i + 1 < edges.size(); ++i)
     if (between(s, edges[i], edges[i + 1]).size() >= kFewestSamples)
       own.push_back(residual(edges[i], edges[i + 1]));
   if (own.empty()) return {};
-  std::sort(own.begin(), own.end());
-  const double noise = std::max(own[own.size() / 3], finest_of(s));
+  const double noise = noise_of(std::move(own), s);
   for (std::size_t i = 1; i + 1 < edges.size();) {
     if (residual(edges[i - 1], edges[i + 1]) <= 1.6 * noise) {
       edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(i));
@@ -353,8 +364,7 @@ void SeriesFit::keep_free_flights() {
     throw InputError({.file = {}, .key = "bounces"},
                      "no free flights are seen, because most of the flights do not curve downwards; heights "
                      "must count upwards.");
-  std::sort(residuals.begin(), residuals.end());
-  const double noise = std::max(residuals[residuals.size() / 3], finest_of(samples_));
+  const double noise = noise_of(std::move(residuals), samples_);
   const auto is_free = [&](std::size_t f) {
     const double off = std::abs(curvatures[f] - gravity), lasts = s_.flights[f].end - s_.flights[f].begin;
     return off < kFar * gravity || off * lasts * lasts / 16 < kClear * noise;
@@ -454,12 +464,6 @@ void SeriesFit::add_residual(ceres::Problem& problem, const Placed& q, ceres::Lo
   problem.AddResidualBlock(cost, loss, s_.p.data());
 }
 
-/// Robust standard deviation of residuals, at least 1e-12.
-double scale_of(std::vector<double> r) {
-  for (double& x : r) x = std::abs(x);
-  return std::max(1.4826 * upper_median(std::move(r)), 1e-12);
-}
-
 void SeriesFit::fit_robustly() {
   const std::vector<Placed> in = placed();
   const double scale = scale_of(residuals(in));
@@ -512,7 +516,7 @@ BounceFit SeriesFit::result() const {
   add_impacts(out);
   require_physical(out);
   constexpr double kFar = 10, kShare = 0.01;
-  const double scatter = scatter_of(samples_), span = finest_of(samples_) / kFinest;
+  const double scatter = scatter_of(samples_), span = span_of(samples_);
   if (out.rms > kFar * scatter && out.rms > kShare * span)
     throw InputError(
         {.file = {}, .key = "bounces"},

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "analysis/statistics/statistics.hpp"
+#include "calibration/fit/chi_square.hpp"
 #include "core/counted.hpp"
 #include "core/error.hpp"
 
@@ -354,7 +355,7 @@ Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<
     out.predicted.push_back(v.y);
     out.slope.push_back(v.slope);
   }
-  if (out.chi2 > out.freedom + 3 * std::sqrt(2 * out.freedom) + 4)
+  if (is_beyond_errors(out.chi2, out.freedom))
     out.notes.push_back(
         fmt::format("no parameters in the search range describe the measurement: chi^2 = {:.3g} of {:g}",
                     out.chi2, out.freedom));

@@ -11,6 +11,7 @@
 #include <numeric>
 #include <set>
 
+#include "calibration/fit/chi_square.hpp"
 #include "core/counted.hpp"
 #include "core/error.hpp"
 
@@ -251,11 +252,10 @@ void add_notes(CurveFit& result, const Selected& selected) {
     }
   const double chi2 = 2 * fit.cost_after,
                freedom = static_cast<double>(selected.points.size()) - static_cast<double>(fit.values.size());
-  if (result.weighted && chi2 > freedom + 3 * std::sqrt(2 * freedom) + 4)
+  if (result.weighted && is_beyond_errors(chi2, freedom))
     result.notes.push_back(
         fmt::format("the curve misses the points by more than their stated errors: chi^2 = {:.3g} of {:g}; "
-                    "the intervals hold "
-                    "only for a law that describes the points",
+                    "the intervals hold only for a law that describes the points",
                     chi2, freedom));
   if (result.runs.p < kSuspicious)
     result.notes.push_back(fmt::format(

@@ -22,7 +22,7 @@ struct BedSizes {
 struct BedParts {
   std::size_t state;      ///< records, spins, forces, report: comes back with every launch
   std::size_t contacts;   ///< lists and memory: read for checkpoints
-  std::size_t constants;  ///< so far the bed stays on the machine
+  std::size_t constants;  ///< up to here the bed stays on the machine
   std::size_t all;        ///< with the inputs, which go to the machine with every launch
 };
 
