@@ -25,8 +25,8 @@ class Solver {
   /// Advances the system by a number of steps.
   /// \throws RunError from guard.hpp, naming step, bead and likely cause
   virtual void advance(System& system, std::int64_t steps) = 0;
-  /// Advances by each of several numbers of steps, above 0, in turn, and calls `after` after each. It may read
-  /// the system but neither change it nor throw: a device computes all pieces before the first call.
+  /// Advances by each of several numbers of steps, above 0, in turn, and calls `after` after each. It may
+  /// read the system but neither change it nor throw: a device computes all pieces before the first call.
   virtual void advance_in_pieces(System& system, const std::vector<std::int64_t>& pieces,
                                  const std::function<void()>& after) {
     for (const std::int64_t steps : pieces) {

@@ -254,10 +254,7 @@ TEST(Fits, RefusalsNameTheWindowAndTheData) {
   EXPECT_NE(empty.find("[3, 4]"), std::string::npos) << empty;
   EXPECT_FALSE(refusal([&] { fit_curve(law, {}); }).empty());
   EXPECT_FALSE(refusal([&] { fit_curve(law, {{3, 0.1}}); }).empty());
-  EXPECT_NE(refusal([&] {
-              fit_curve(law, {{3, 0.1}, {3, 0.2}});
-            }).find("one abscissa"),
-            std::string::npos);
+  EXPECT_NE(refusal([&] { fit_curve(law, {{3, 0.1}, {3, 0.2}}); }).find("one abscissa"), std::string::npos);
   EXPECT_NE(refusal([&] { fit_curve(law_named("algebraic"), points); }).find("3 parameters"),
             std::string::npos);
   EXPECT_NE(refusal([&] { law_named("parabola"); }).find("arrhenius_break"), std::string::npos);
