@@ -14,6 +14,7 @@
 #include "cli/calibrate.hpp"
 #include "cli/numbers.hpp"
 #include "cli/stack_info.hpp"
+#include "core/constants.hpp"
 #include "core/error.hpp"
 #include "imaging/stack/open_frames.hpp"
 
@@ -27,8 +28,6 @@ struct CameraCalibration {
   std::vector<int> grid;
   std::optional<double> focal_px, spacing;
 };
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Row of the plate's mean height in the undistorted picture: from a fit of its harmonic motion, or the mean
 /// over the frames if the plate is at rest.
@@ -82,7 +81,7 @@ void add_target(const CameraCalibration& o, nlohmann::json& d, std::string& text
 }
 
 /// The geometry of the cell, and what else the results of this kind are computed from.
-struct Measured {
+struct MeasuredCamera {
   const CameraCalibration& options;
   const imaging::CellDescription& cell;
   const calibration::CellGeometry& geometry;
@@ -129,7 +128,7 @@ struct Scale {
 };
 
 /// The scale from the walls if their distance is known, otherwise from the diameter of the beads.
-Scale scale_of(const Measured& m) {
+Scale measured_scale(const MeasuredCamera& m) {
   if (m.by_walls) return {*m.by_walls, kScaleByWalls};
   if (m.census)
     return {m.census->diameter,
@@ -139,7 +138,7 @@ Scale scale_of(const Measured& m) {
 }
 
 /// Adds scale, origin, rotation and distortion.
-void add_quantities(CalibrationResult& out, const Measured& m, const Scale& scale,
+void add_quantities(CalibrationResult& out, const MeasuredCamera& m, const Scale& scale,
                     const calibration::Estimate& row) {
   const calibration::CellGeometry& g = m.geometry;
   const auto add = [&](const std::string& name, std::vector<double> value, std::vector<double> error,
@@ -168,7 +167,7 @@ void add_quantities(CalibrationResult& out, const Measured& m, const Scale& scal
 
 /// Adds the covariance of the stored quantities. The rows of `map` lead from the parameters of the fit to
 /// these quantities.
-void add_covariance(CalibrationResult& out, const Measured& m, const Scale& scale,
+void add_covariance(CalibrationResult& out, const MeasuredCamera& m, const Scale& scale,
                     const calibration::Estimate& row) {
   const calibration::CellGeometry& g = m.geometry;
   if (!g.has_left || !g.has_plate || g.fit.covariance.size() == 0) return;
@@ -221,7 +220,7 @@ void report_perspective(CalibrationResult& out, const calibration::SizeStatistic
 }
 
 /// Comparison of the scales, printed only.
-void report_scales(CalibrationResult& out, const Measured& m) {
+void report_scales(CalibrationResult& out, const MeasuredCamera& m) {
   nlohmann::json& d = out.document;
   const auto scale_line = [&](const char* what, const calibration::Estimate& e) {
     d["scales"][what] = {{"value", e.value}, {"standard_error", finite(e.error)}};
@@ -262,10 +261,10 @@ void run(const CameraCalibration& o, const Common& common) {
   out.document["stack"] = o.flags.stack;
   calibration::StackEdges edges;
   const calibration::CellGeometry g = geometry_of(o.flags, cell, common, edges);
-  Measured m{o, cell, g, data_hash(o.flags.stack), {}, {}};
+  MeasuredCamera m{o, cell, g, data_hash(o.flags.stack), {}, {}};
   m.census = census_of(o, cell, g, common, out.notes);
   m.by_walls = scale_by_walls(cell, g);
-  const Scale scale = scale_of(m);
+  const Scale scale = measured_scale(m);
   const calibration::Estimate row = mean_row(g);
   add_quantities(out, m, scale, row);
   add_covariance(out, m, scale, row);

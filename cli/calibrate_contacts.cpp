@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "calibration/contact/bounce.hpp"
@@ -58,12 +59,14 @@ std::vector<calibration::BounceSample> samples_of(const BounceFlags& o, std::opt
           fmt::format("is {}, but {} is no trajectory (H5MD) and has only one bead.", *o.bead, o.source));
     const Table table = read_table(o.source);
     const auto &t = table.column("time"), &z = table.column("height");
+    double before = -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < t.size(); ++i) {
       samples.push_back({t[i], z[i]});
-      if (i > 0 && t[i] <= t[i - 1])
+      if (t[i] <= before)
         throw InputError(
             {.file = o.source, .key = "time"},
-            fmt::format("row {} contains {:g} after {:g}; times must increase.", i + 1, t[i], t[i - 1]));
+            fmt::format("row {} contains {:g} after {:g}; times must increase.", i + 1, t[i], before));
+      if (std::isfinite(t[i])) before = t[i];
     }
   }
   return samples;
@@ -111,6 +114,11 @@ void run_bounce(const BounceFlags& o, const Common& common) {
   } catch (const InputError& e) {
     throw InputError({.file = o.source, .key = {}}, e.what());
   }
+  if (const auto empty = std::ranges::count_if(
+          samples, [](const auto& s) { return !std::isfinite(s.time) || !std::isfinite(s.height); });
+      empty > 0)
+    fit.notes.push_back(
+        fmt::format("{} without a number {} left out", counted(empty, "row"), empty == 1 ? "was" : "were"));
   if (is_trajectory(o.source) && !o.gravity)
     if (const std::string why = check_unit_gravity(o.source, fit); !why.empty()) fit.notes.push_back(why);
   CalibrationResult out;

@@ -9,7 +9,6 @@
 #include <atomic>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -24,6 +23,7 @@
 #include "calibration/fit/curve_components.hpp"
 #include "cli/calibrate.hpp"
 #include "core/assignments.hpp"
+#include "core/constants.hpp"
 #include "core/error.hpp"
 #include "core/in_parallel.hpp"
 #include "sim/run/simulation.hpp"
@@ -31,8 +31,6 @@
 
 namespace twincell::cli {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 struct InferFlags {
   CalibrateFlags out;

@@ -66,7 +66,7 @@ calibration::DriveFit lock_of(const PlateOptions& o, const imaging::CellDescript
 }
 
 /// What the results of this kind are computed from.
-struct Measured {
+struct MeasuredPlate {
   const PlateOptions& options;
   const imaging::CellDescription& cell;
   const calibration::CellGeometry& geometry;
@@ -92,7 +92,7 @@ std::optional<double> rate_of(const PlateOptions& o, const imaging::CellDescript
 }
 
 /// Adds the quantities of camera and drive.
-void add_quantities(CalibrationResult& out, const Measured& m) {
+void add_quantities(CalibrationResult& out, const MeasuredPlate& m) {
   const calibration::DriveFit& lock = m.lock;
   const auto add = [&](const std::string& name, double value, double error, const std::string& method) {
     out.measured.push_back(
@@ -122,7 +122,7 @@ void add_quantities(CalibrationResult& out, const Measured& m) {
 }
 
 /// What the scale leaves open.
-void note_scale(CalibrationResult& out, const Measured& m) {
+void note_scale(CalibrationResult& out, const MeasuredPlate& m) {
   if (!m.scale)
     out.notes.emplace_back(
         "no scale is known, so A is given only in px: state camera.pixels_per_sigma or cell.width in "
@@ -132,7 +132,7 @@ void note_scale(CalibrationResult& out, const Measured& m) {
 }
 
 /// Adds what only this kind has to the document: the motion of the plate.
-void describe_motion(nlohmann::json& d, const Measured& m) {
+void describe_motion(nlohmann::json& d, const MeasuredPlate& m) {
   const calibration::DriveFit& lock = m.lock;
   d["plate"] = {
       {"z0_px", lock.z0},
@@ -154,7 +154,7 @@ void describe_motion(nlohmann::json& d, const Measured& m) {
 }
 
 /// Adds the phase of each frame to the document.
-void describe_frames(nlohmann::json& d, const Measured& m) {
+void describe_frames(nlohmann::json& d, const MeasuredPlate& m) {
   const calibration::DriveFit& lock = m.lock;
   d["frames"] = {{"locked", lock.locked},
                  {"out_of_lock", lock.out_of_lock},
@@ -173,7 +173,7 @@ void describe_frames(nlohmann::json& d, const Measured& m) {
 }
 
 /// The same as text.
-std::string text_of(const Measured& m) {
+std::string text_of(const MeasuredPlate& m) {
   const calibration::DriveFit& lock = m.lock;
   std::string text = fmt::format(
       "A = {:.4f} +- {:.4f} px about row {:.3f}; rms residual {:.3f} px, edge blur {:.2f} px\n",
@@ -190,7 +190,8 @@ std::string text_of(const Measured& m) {
 }
 
 /// A omega^2 from the picture next to that of the accelerometer. \pre scale and rate are known
-void compare_acceleration(CalibrationResult& out, const Measured& m, const calibration::VibrationFit& v) {
+void compare_acceleration(CalibrationResult& out, const MeasuredPlate& m,
+                          const calibration::VibrationFit& v) {
   const double f = m.frequency_hz(), e = m.frequency_error_hz(), w = 2 * M_PI * f;
   const double metres = m.lock.amplitude / m.scale->value * *m.cell.scale.sigma_m, seen = metres * w * w;
   const double error =
@@ -204,7 +205,8 @@ void compare_acceleration(CalibrationResult& out, const Measured& m, const calib
 }
 
 /// Comparison with the accelerometer: frequency, and A omega^2 if the scale is known.
-void compare_with(const calibration::VibrationTable& vibration, CalibrationResult& out, const Measured& m) {
+void compare_with(const calibration::VibrationTable& vibration, CalibrationResult& out,
+                  const MeasuredPlate& m) {
   const calibration::VibrationFit v = calibration::fit_vibration(vibration);
   nlohmann::json& d = out.document["accelerometer"];
   d = {{"frequency_hz", {{"value", v.frequency_hz}, {"standard_error", v.frequency_error}}},
@@ -229,7 +231,7 @@ void run(const PlateOptions& o, const Common& common) {
       o.accelerometer.empty() ? std::nullopt : std::optional(calibration::read_vibration(o.accelerometer));
   calibration::StackEdges edges;
   const calibration::CellGeometry g = geometry_of(o.flags, cell, common, edges);
-  Measured m{o, cell, g, lock_of(o, cell, g), scale_of(cell, g), {}, data_hash(o.flags.stack)};
+  MeasuredPlate m{o, cell, g, lock_of(o, cell, g), scale_of(cell, g), {}, data_hash(o.flags.stack)};
   calibration::DriveFit& lock = m.lock;
   lock.amplitude_error = std::hypot(lock.amplitude_error, lock.amplitude * g.stretch_error);
 

@@ -344,6 +344,9 @@ CostReport cost_of_stepping(const CostOptions& options, const Common& common) {
 void run(const CostOptions& options, const Common& common) {
   constexpr double kAccuracy_px = 0.01, kAccuracy_gas = 0.01;
   const bool locate = options.what == "locate";
+  if (options.accuracy && options.what == "calibration")
+    throw ConfigError({.file = {}, .key = "--accuracy"},
+                      "has no effect on cost calibration, which has no setting to choose.");
   if (options.accuracy)
     require_range({.file = {}, .key = "--accuracy"}, *options.accuracy, locate ? 1e-6 : 1e-12,
                   locate ? 100 : 1);

@@ -25,7 +25,7 @@ const imaging::LocateSetting kUsual{};
 constexpr int kTracers = 20,
               kPhases = 20;  // tracers in a line, and least phases per cycle (Fortini & Huang 2015)
 
-struct Measured {
+struct MeasuredLocating {
   std::vector<imaging::LocatePrecision> all;
   imaging::LocateScene scene;
   double accuracy;
@@ -113,7 +113,7 @@ nlohmann::json as_json(const imaging::LocatePrecision& p) {
             {"tracers", imaging::bed_displacement_noise(p.relative(), kTracers, 1, kPhases)}}}};
 }
 
-nlohmann::json as_json(const Measured& m) {
+nlohmann::json as_json(const MeasuredLocating& m) {
   nlohmann::json d = {{"what", "locate"},
                       {"scene",
                        {{"beads", m.scene.beads},
@@ -148,7 +148,7 @@ std::string table(const std::vector<imaging::LocatePrecision>& rows) {
   return s;
 }
 
-std::string as_text(const Measured& m) {
+std::string as_text(const MeasuredLocating& m) {
   std::string s = fmt::format(
       "Accuracy against computing time. {} touching beads in a frame of {} x {} beads; {} such frames.\n"
       "rms: error per coordinate, px; bound: Cramér-Rao, px; bias in x and y, px; locking to pixels, px; ms: "
@@ -239,7 +239,7 @@ class Panels {
   int index_ = 0;
 };
 
-analysis::Figure figure(const Measured& m) {
+analysis::Figure figure(const MeasuredLocating& m) {
   // Each colour also has its own point shape.
   constexpr auto kColours = analysis::colours::kCurves;
   constexpr std::array<int, 7> kShapes = {7, 9, 5, 11, 13, 6, 4};
@@ -297,7 +297,7 @@ analysis::Figure figure(const Measured& m) {
 }  // namespace
 
 CostReport cost_of_locating(double accuracy_px, bool quick, const Common& common) {
-  Measured m;
+  MeasuredLocating m;
   m.accuracy = accuracy_px;
   if (quick) m.scene = {.beads = 200, .width = 20, .height = 20, .frames = 1};
   ProgressBar bar(common, "errors and times");

@@ -70,6 +70,10 @@ void run(DrawOptions& o, const Common& common) {
   if (!o.frames.empty()) o.job.frames = imaging::read_frame_range(o.frames, "--frames");
   if (!o.range.empty()) o.job.colours.range = {o.range[0], o.range[1]};
   const H5mdReader trajectory(o.trajectory);
+  const auto n = static_cast<std::int64_t>(trajectory.n_frames());
+  if (o.job.frames.end > n)
+    note(common, fmt::format("--frames {} reaches beyond the end of {}, which has {}.", o.frames,
+                             o.trajectory, counted(trajectory.n_frames(), "frame")));
   if (o.colour != kPlain) {
     const analysis::Colouring& colouring = analysis::colouring_named(o.colour, trajectory, "--colour");
     o.job.colours.name = colouring.word;

@@ -37,6 +37,10 @@ void note_doubts(const Common& common, const ForeignTrajectory& source, double s
     note(common, fmt::format("{} of the first frame lie beyond the side walls of the cell, which is {:.4g} "
                              "bead diameters wide (--cell-origin, --cell-width).",
                              counted(source.n_beyond(), "bead"), source.info().box.upper.x()));
+  if (const double missing = source.missing_frames(); missing > 0)
+    note(common,
+         fmt::format("the numbers of the steps or frames leave out {:g} {} between the {} of the file.",
+                     missing, missing > 1 ? "frames" : "frame", source.n_frames()));
   if (source.replaces_times()) note(common, "the times of the file are replaced by those of --timestep.");
 }
 

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "analysis/report/report.hpp"
@@ -16,6 +17,7 @@
 #include "core/counted.hpp"
 #include "core/output_rules.hpp"
 #include "imaging/cell/implausible.hpp"
+#include "imaging/stack/different_stacks.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/track/track_request.hpp"
 #include "twin/cell_names.hpp"
@@ -115,6 +117,8 @@ twin::Twin add_twin(const Common& common, const MatchOptions& o, const twin::Twi
   if (!twin.missing_beads.empty())
     note(common, fmt::format("{}: {} ({} are in its first packing).", of_stack.stack.string(),
                              twin.missing_beads, twin.beads));
+  if (!twin.scale_doubt.empty())
+    note(common, fmt::format("{}: {}.", of_stack.stack.string(), twin.scale_doubt));
   if (twin.records_transient())
     note(common,
          fmt::format(
@@ -125,6 +129,19 @@ twin::Twin add_twin(const Common& common, const MatchOptions& o, const twin::Twi
   comparing.experiments.push_back(twin.experiment);
   comparing.simulations.insert(comparing.simulations.end(), twin.simulations.begin(), twin.simulations.end());
   return twin;
+}
+
+/// Does work of which an error must say which of several stacks it is about.
+void naming(const std::filesystem::path& stack, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error& e) {
+    const std::string said = e.what();
+    if (said.find(stack.string()) != std::string::npos) throw;
+    throw Error(e.exit_code(), fmt::format("{}: {}", stack.string(), said));
+  }
 }
 
 /// \throws ConfigError if the folder holds the result of a match of another layout, or a report that may not
@@ -158,7 +175,10 @@ std::vector<twin::Twin> make_twins(const Common& common, const MatchOptions& o,
   for (std::size_t i = 0; i < pairs.stacks.size(); ++i) {
     options.stack = pairs.stacks[i];
     options.cell_file = pairs.cells[i];
-    twins.push_back(add_twin(common, o, options, several ? folder / names[i] : folder, comparing));
+    const auto add = [&] {
+      twins.push_back(add_twin(common, o, options, several ? folder / names[i] : folder, comparing));
+    };
+    several ? naming(options.stack, add) : add();
   }
   return twins;
 }
@@ -173,8 +193,9 @@ nlohmann::json as_json(const std::vector<twin::Twin>& twins) {
 void run(const Common& common, const MatchOptions& o) {
   twin::ComparingOptions options = configuration(o, common);
   const twin::StacksAndCells pairs = twin::pair_stacks(o.stacks_and_cells);
-  // A mistake in the last cell must not appear after the first hour.
+  // A mistake in the last cell or stack must not appear after the first hour.
   for (const auto& cell : pairs.cells) (void)imaging::read_cell(cell);
+  imaging::require_different_stacks(pairs.stacks);
   const std::vector<twin::Twin> twins = make_twins(common, o, pairs, options);
   std::string text;
   for (const twin::Twin& twin : twins) text += as_text(twin);

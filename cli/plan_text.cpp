@@ -5,7 +5,7 @@
 
 namespace twincell::cli {
 
-nlohmann::json as_json(const sim::Plan& plan) {
+nlohmann::json plan_as_json(const sim::Plan& plan) {
   return nlohmann::json::parse(sim::plan_json(plan));
 }
 

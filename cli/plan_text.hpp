@@ -14,7 +14,7 @@ namespace twincell::cli {
 struct Common;
 
 /// The plan as JSON: kernel, time step, and every effect with its state and reason.
-nlohmann::json as_json(const sim::Plan& plan);
+nlohmann::json plan_as_json(const sim::Plan& plan);
 
 /// Provenance of a simulated file. \param beads the placed beads; beads that are read from a file can require
 /// another step than the scene alone

@@ -131,7 +131,7 @@ nlohmann::json describe(const sim::Simulation& run, const std::string& output, s
                       {"particle_steps_per_second", seconds > 0 ? steps * n / seconds : 0}};
   sim::Plan plan = run.plan();
   sim::state_step_error(s, plan);
-  d.update(as_json(plan));
+  d.update(plan_as_json(plan));
   if (const auto fraction = run.contact_fraction()) d["contact_fraction"] = *fraction;
   return d;
 }

@@ -134,6 +134,7 @@ void run(TrackOptions& o, const Common& common) {
          "the stated drive does not fit the film: " + film.check.disagreement + " (--trust-stated-drive).");
   if (!stack.phases.warning.empty()) note(common, stack.phases.warning + ".");
   if (const std::string missing = stack.missing_beads(); !missing.empty()) note(common, missing + ".");
+  if (const std::string doubt = stack.scale_doubt(cell); !doubt.empty()) note(common, doubt + ".");
   const imaging::FrameRange range = imaging::frames_of(o.film.locating);
   // Write the trajectory, then the table.
   Provenance provenance = common.provenance();

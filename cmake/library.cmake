@@ -28,3 +28,12 @@ endfunction()
 function(twincell_orchestrates target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
+
+# twincell_in_batches(TARGET): compiles the target's files eight at a time. They spend most of their time on the templates
+# of the same libraries, so that a whole build takes half the time; one changed file takes three times as long. A name
+# in an unnamed namespace must differ from those of the other files. Debug builds compile each file by itself.
+function(twincell_in_batches target)
+  if(NOT CMAKE_BUILD_TYPE STREQUAL Debug)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  endif()
+endfunction()

@@ -14,7 +14,7 @@ namespace twincell::sweep {
 
 namespace {
 
-constexpr std::int64_t kFirstLook = 20, kBetweenLooks = 10;
+constexpr std::int64_t kFirstLook = 20, kLookEvery = 10;
 
 /// Upper estimate of the mean over `all` cycles of a series whose first cycles are known. The rest starts
 /// from the maximum of the later half and rises with the slope of its straight line plus three standard
@@ -69,7 +69,7 @@ bool StopRule::settled(const Frame& frame) {
   const std::int64_t done = frame.cycle + 1;
   if (frame.phase + 1 < tracers_.info().phases_per_cycle || done >= cycles_ || slots_.size() < 2)
     return false;
-  if (done >= kFirstLook && done % kBetweenLooks == 0) look();
+  if (done >= kFirstLook && done % kLookEvery == 0) look();
   return !reason_.empty();
 }
 

@@ -6,16 +6,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "core/constants.hpp"
 #include "core/escape.hpp"
 #include "core/toml_leaves.hpp"
 
 namespace twincell {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr bool kWhole = true, kCell = true, kScene = true;
 
 /// Interchangeable keys: a configuration that sets `enough` of them takes none from the calibration.

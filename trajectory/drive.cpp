@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/constants.hpp"
 #include "trajectory/recorded_motion.hpp"
 
 namespace twincell {
@@ -17,8 +18,6 @@ double Drive::period() const {
 }
 
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 /// Phase of the harmonic of order n at `fraction` of a period, radians.
 double angle_of(const Harmonic& harmonic, double n, double fraction) {

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "core/constants.hpp"
 
 namespace twincell {
 
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 /// A ramp without its way back: lengths and changes.
 struct Leg {

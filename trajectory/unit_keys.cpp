@@ -35,7 +35,7 @@ constexpr std::array kDrive = {
 constexpr std::array kRecord = {
     Quantity{"cutoff", "cutoff_per_t0", "cutoff_hz", Unit::rate_per_s, Sign::positive}};
 constexpr std::array kHorizontal = {kDrive[0]};
-constexpr std::array kCell = {
+constexpr std::array kCellSize = {
     Quantity{"width", "width_sigma", "width_mm", Unit::length_mm, Sign::positive},
     Quantity{"height", "height_sigma", "height_mm", Unit::length_mm, Sign::positive},
     Quantity{"depth", "depth_sigma", "depth_mm", Unit::length_mm, Sign::positive}};
@@ -53,7 +53,7 @@ struct Table {
 };
 constexpr std::array kTables = {Table{"drive", kDrive},         Table{"drive", kRecord},
                                 Table{"drive.ramp", kDrive},    Table{"drive.horizontal", kHorizontal},
-                                Table{"cell", kCell},           Table{"beads", kBead},
+                                Table{"cell", kCellSize},       Table{"beads", kBead},
                                 Table{"beads.intruder", kBead}, Table{"beads.intruder", kPlace}};
 
 /// A key with a unit, and the plain reduced key that it sets.

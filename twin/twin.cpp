@@ -191,7 +191,10 @@ calibration::DriveCheck check_plate(const FilmedCell& filmed, const TwinOptions&
 imaging::LocatorOptions locator_for(const imaging::CellDescription& cell, const TwinOptions& options) {
   imaging::LocatorOptions locator = options.locator;
   locator.preprocess.bright |= cell.bright;
-  if (locator.diameter_px <= 0) locator.diameter_px = cell.pixels_per_sigma.value_or(0);
+  if (locator.diameter_px <= 0 && cell.pixels_per_sigma) {
+    locator.diameter_px = *cell.pixels_per_sigma;
+    locator.diameter_of_scale = true;
+  }
   return locator;
 }
 
@@ -210,6 +213,7 @@ void track_experiment(imaging::FrameSource& frames, FilmedCell& filmed, calibrat
   cell.phase_lock.frames_per_cycle = stack.phases.frames_per_cycle;
   twin.phases = stack.phases;
   twin.missing_beads = stack.missing_beads();
+  twin.scale_doubt = stack.scale_doubt(cell);
   imaging::TrackPlan plan = imaging::plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
   if (checks_drive(filmed, options) && check.by.empty()) {
     calibration::BedSteps bed(plan.info);

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 
+#include "core/constants.hpp"
 #include "trajectory/centre_of_mass.hpp"
 
 namespace twincell::analysis {
@@ -14,7 +14,6 @@ namespace {
 constexpr NamedResult kResults[] = {{"profile_z"}, {"phi_z"},        {"T_z_z"},
                                     {"T_x_z"},     {"T_z_frames_z"}, {"T_z_volume"}};
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const char* const kSource = "Bhateja, Sharma & Singh 2016, Figs. 12 to 16";
 
 /// Mass-weighted mean and sum of squares of a velocity, updated in one pass.

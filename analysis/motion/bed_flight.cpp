@@ -6,16 +6,15 @@
 #include <array>
 #include <cmath>
 #include <deque>
-#include <limits>
 #include <optional>
 #include <vector>
+
+#include "core/constants.hpp"
 
 namespace twincell::analysis {
 namespace {
 
 constexpr NamedResult kResults[] = {{.name = "flight_time", .main = true}, {"flight_share"}};
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 const char* const kSource = "Mehta & Luck 1990, the completely inelastic case";
 const char* const kNoCycle = "no whole cycle after the first contact with the plate";

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "analysis/motion/rolls.hpp"
+#include "core/constants.hpp"
 
 namespace twincell::analysis {
 namespace {
@@ -16,7 +16,6 @@ constexpr NamedResult kResults[] = {
     {"circulation_left"},   {"circulation_right"}, {.name = "rolls", .main = true},
     {"convection_sense"}};
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMostRows = 4096;  // bounds the table: a bead that is thrown far up must not enlarge it
 constexpr std::size_t kMostBlocks = 20;
 constexpr std::size_t kFewestBlocks = 4;

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "analysis/motion/tracer_line.hpp"
 #include "analysis/motion/tracers.hpp"
+#include "core/constants.hpp"
 
 namespace twincell::analysis {
 namespace {
@@ -31,7 +31,6 @@ constexpr NamedResult kResults[] = {{"s_k"},
                                     {"tracers", Pooling::per_bead},
                                     {"tracer_heights", Pooling::per_bead}};
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kJump = 0.5;  ///< sigma; larger changes of a height within one cycle are reported as jumps
 
 /// Sums of the tracers' heights above the plate for each (tracer, phase).

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
+
+#include "core/constants.hpp"
 
 namespace twincell::analysis {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kFewestCycles = 8;
 constexpr double kCameToRest =
     0.2;  ///< motion of the second half relative to the first, below which it is annealed

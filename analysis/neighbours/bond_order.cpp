@@ -3,13 +3,12 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
+
+#include "core/constants.hpp"
 
 namespace twincell::analysis {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// a_m = (4 pi/13) |Y_6m(pi/2, 0)|^2 for m = 0, 2, 4, 6. The terms of odd m vanish in the plane. The Y_lm of
 /// the standard library have the same normalisation as Steinhardt's definition.

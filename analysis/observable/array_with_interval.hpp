@@ -3,11 +3,11 @@
 /// Arrays whose elements have intervals.
 
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "analysis/observable/observable.hpp"
+#include "core/constants.hpp"
 
 namespace twincell::analysis {
 
@@ -19,7 +19,6 @@ namespace twincell::analysis {
 template <class Average>
 std::vector<Result> array_with_interval(const std::vector<Average>& series, const Result& r,
                                         const std::string& samples, const std::string& why_absent) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> mean, low, high;
   std::string method, why_none = why_absent;
   for (const Average& one : series) {

@@ -1,11 +1,11 @@
 #include "analysis/order/pair_correlation.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "analysis/neighbours/bed_window.hpp"
 #include "analysis/observable/array_with_interval.hpp"
+#include "core/constants.hpp"
 
 namespace twincell::analysis {
 namespace {
@@ -50,7 +50,6 @@ class PairCorrelation : public Observable {
   }
 
   [[nodiscard]] std::vector<Result> results() const override {
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     std::vector<double> values(kBins, kNaN), centres(kBins);
     std::size_t peak = kBins;
     for (std::size_t b = 0; b < kBins; ++b) {

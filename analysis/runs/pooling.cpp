@@ -8,7 +8,6 @@
 #include <cassert>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -16,12 +15,12 @@
 
 #include "analysis/runs/phase_diagram.hpp"
 #include "analysis/statistics/statistics.hpp"
+#include "core/constants.hpp"
 #include "core/error.hpp"
 
 namespace twincell::analysis {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Rotation that maps a hexagonal lattice onto itself, degrees.
 constexpr double kTurn = 60;
 

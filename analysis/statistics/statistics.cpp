@@ -11,10 +11,11 @@
 #include <numeric>
 #include <random>
 
+#include "core/constants.hpp"
+
 namespace twincell::analysis {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Maximum number of stored means of consecutive values.
 constexpr std::size_t kCoarse = 4096;
 /// Relative difference below which two numbers are equal up to rounding.

@@ -6,10 +6,11 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 
+#include "calibration/fit/outliers.hpp"
+#include "core/constants.hpp"
 #include "core/error.hpp"
 #include "core/in_parallel.hpp"
 #include "core/median.hpp"
@@ -19,13 +20,11 @@
 namespace twincell::calibration {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::size_t kWallFrames = 40;  // frames in which the walls are searched
 constexpr std::size_t kPlateFrames =
     40;                             // frames whose plate points enter the fit of rotation and distortion
 constexpr double kWindow_px = 0.6;  // width of the window in which points belong to one edge
-constexpr double kWorstSigma = 4;   // points beyond it do not belong to the edge
 
 /// An edge point in the edge's coordinates: u along, v across the edge; v increases towards the cell's
 /// interior.

@@ -6,10 +6,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "calibration/fit/fit.hpp"
+#include "core/constants.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
 #include "imaging/settings/configure_locator.hpp"
@@ -17,8 +17,6 @@
 
 namespace twincell::calibration {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double median_spread(const std::vector<double>& v, double middle) {
   std::vector<double> r;
@@ -73,15 +71,15 @@ struct PairsInBin {
 /// Centre distance of touching beads, from all near pairs. In a moving bed most near pairs do not quite
 /// touch. The mean around the mode, which was tried first, was too large by eight of its standard errors.
 std::optional<Estimate> touching(const std::vector<double>& pairs, double diameter, std::size_t frames) {
-  constexpr std::size_t kFewest = 20;
+  constexpr std::size_t kFewestPairs = 20;
   constexpr double kBin = 0.5, kBelow = 5,
                    kAbove = 0.015;  // bin and lower limit in peak widths; upper limit in diameters
-  if (pairs.size() < kFewest) return std::nullopt;
+  if (pairs.size() < kFewestPairs) return std::nullopt;
   const double mode = half_sample_mode(pairs);
   std::vector<double> below;
   for (const double r : pairs)
     if (r < mode) below.push_back(mode - r);
-  if (below.size() < kFewest / 2) return std::nullopt;
+  if (below.size() < kFewestPairs / 2) return std::nullopt;
   // Distances below the mode contain no gaps, so only they give the noise.
   const double width = std::max(1e-4 * diameter, 1.4826 * upper_median(below));
   const double low = mode - kBelow * width, high = mode + std::max(kBelow * width, kAbove * diameter),
@@ -91,7 +89,7 @@ std::optional<Estimate> touching(const std::vector<double>& pairs, double diamet
   for (const double r : pairs)
     if (r > low && r < low + bin * static_cast<double>(counts.size()))
       ++counts[static_cast<std::size_t>((r - low) / bin)], ++n;
-  if (n < kFewest) return std::nullopt;
+  if (n < kFewestPairs) return std::nullopt;
   std::vector<double> p = {mode, std::log(width), std::sqrt(0.8 * n), std::sqrt(0.2 * n / (high - mode))};
   ceres::Problem problem;
   for (std::size_t k = 0; k < counts.size(); ++k)
@@ -102,7 +100,7 @@ std::optional<Estimate> touching(const std::vector<double>& pairs, double diamet
       solve(problem, p.data(), {"distance", "noise", "touching", "apart"}, Residuals::weighted);
   const double moved = std::abs(fit.values[0] - mode);
   // Without a peak of touching pairs the distance is not defined.
-  if (!fit.usable || !(moved < 3 * width) || !(fit.values[2] * fit.values[2] > kFewest / 2.0))
+  if (!fit.usable || !(moved < 3 * width) || !(fit.values[2] * fit.values[2] > kFewestPairs / 2.0))
     return std::nullopt;
   const double error = fit.standard_errors.empty() ? width / std::sqrt(n) : fit.standard_errors[0];
   // The same pairs recur in other frames, so frames do not add independent data.

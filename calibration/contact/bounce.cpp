@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "calibration/fit/outliers.hpp"
 #include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
@@ -17,7 +18,6 @@ namespace twincell::calibration {
 namespace {
 
 constexpr std::size_t kFewestSamples = 6;  // of a flight
-constexpr double kWorstSigma = 4;          // outliers lie beyond it
 
 struct Flight {
   double begin = 0, end = 0;

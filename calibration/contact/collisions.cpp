@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
+#include "core/constants.hpp"
 #include "core/error.hpp"
 
 namespace twincell::calibration {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Time in [0, longest] at which two discs in uniform relative motion touch; none if they do not.
 std::optional<double> meeting(const Vec3& r, const Vec3& v, double reach, double longest) {

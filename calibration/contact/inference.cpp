@@ -8,17 +8,16 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "analysis/statistics/statistics.hpp"
 #include "calibration/fit/chi_square.hpp"
+#include "core/constants.hpp"
 #include "core/counted.hpp"
 #include "core/error.hpp"
 
 namespace twincell::calibration {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kSteps = 60;  // sets the grid steps of a profile
 
 /// All monomials 1, x_i, x_i x_k, ... up to `degree`, where each x_i is scaled to -1 ... 1 over its range.

@@ -8,14 +8,13 @@
 #include <limits>
 
 #include "calibration/fit/curve_fit.hpp"
+#include "calibration/fit/outliers.hpp"
+#include "core/constants.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
 
 namespace twincell::calibration {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kWorstSigma = 4;
 
 double spread_of(std::vector<double> r, double middle) {
   for (double& x : r) x = std::abs(x - middle);

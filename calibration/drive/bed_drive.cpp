@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
+#include "core/constants.hpp"
 #include "core/median.hpp"
 
 namespace twincell::calibration {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 /// Fewest columns of beads that give a step of the bed.
 constexpr std::size_t kFewestBeads = 5;
 /// Fewest cycles that give a scatter between cycles.

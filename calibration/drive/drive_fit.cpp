@@ -11,6 +11,8 @@
 #include <numbers>
 
 #include "analysis/statistics/statistics.hpp"
+#include "calibration/fit/outliers.hpp"
+#include "core/constants.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
 #include "imaging/phase/sine_slips.hpp"
@@ -19,8 +21,6 @@ namespace twincell::calibration {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kWorstSigma = 4;
 constexpr std::size_t kSearched = 2000;  // samples of the periodogram
 constexpr double kSuspicious = 0.01;     // largest p of a second harmonic that is reported as significant
 

@@ -12,13 +12,13 @@
 #include <set>
 
 #include "calibration/fit/chi_square.hpp"
+#include "core/constants.hpp"
 #include "core/counted.hpp"
 #include "core/error.hpp"
 
 namespace twincell::calibration {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSuspicious = 0.05;
 constexpr double kCorrelated = 0.99;
 /// A residual sum of squares below this share of the ordinates' sum of squares is rounding error.

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kLargestCondition = 1e12;
 /// A parameter is undetermined if its component in an undetermined direction exceeds this value.
-constexpr double kShare = 0.1;
+constexpr double kLargeShare = 0.1;
 
 /// Jacobian at the present parameters, dense because the problems have few parameters.
 Eigen::MatrixXd jacobian_at(ceres::Problem& problem) {
@@ -53,8 +53,8 @@ void add_covariance(FitReport& report, const Eigen::MatrixXd& jacobian, Residual
     for (Eigen::Index c = 0; c < n; ++c) {
       bool open = false;
       for (Eigen::Index d = 0; d < n; ++d)
-        open = open ||
-               (!(s[0] * s[0] <= kLargestCondition * s[d] * s[d]) && std::abs(svd.matrixV()(c, d)) > kShare);
+        open = open || (!(s[0] * s[0] <= kLargestCondition * s[d] * s[d]) &&
+                        std::abs(svd.matrixV()(c, d)) > kLargeShare);
       if (open) report.undetermined.push_back(report.names[static_cast<std::size_t>(c)]);
     }
     report.why_not = fmt::format("the data do not separate {} (condition number {:.1e})",

@@ -15,10 +15,6 @@ constexpr std::size_t kBeads = 1600;
 
 using Random = std::mt19937_64;
 
-double uniform(Random& random, double a, double b) {
-  return std::uniform_real_distribution<double>(a, b)(random);
-}
-
 // Bed of beads of `diameter` px in a frame of 40 x 100 diameters. The radii are uniformly distributed within
 // +-spread. `over`: distance by which the bed extends beyond the left, right and bottom of the frame, px; a
 // negative value keeps the bed that far inside.

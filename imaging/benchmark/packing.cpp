@@ -9,11 +9,11 @@
 
 namespace twincell::imaging::rendered {
 
-namespace {
-
 double uniform(std::mt19937_64& random, double a, double b) {
   return std::uniform_real_distribution<double>(a, b)(random);
 }
+
+namespace {
 
 // A placed disc. Its height is measured upwards from the floor.
 struct Placed {

@@ -10,6 +10,9 @@
 
 namespace twincell::imaging::rendered {
 
+/// A uniformly distributed number in [a, b).
+double uniform(std::mt19937_64& random, double a, double b);
+
 /// One disc per radius on a square grid over the whole rectangle, each disc displaced at random within the
 /// free space of its cell. Nearest neighbours are at least two px apart.
 std::vector<Disc> sparse(const std::vector<double>& radii, cv::Rect2d room, std::mt19937_64& random);

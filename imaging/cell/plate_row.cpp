@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
+#include "core/constants.hpp"
 #include "imaging/preprocess/straight_bars.hpp"
 
 namespace twincell::imaging {
@@ -43,14 +43,13 @@ double bar_height_px(const cv::Mat& grey, bool bright, double light, double dark
     }
     if (heights.size() > highest.size()) highest = std::move(heights);
   }
-  return highest.empty() ? std::numeric_limits<double>::quiet_NaN() : quantile(highest, kPlateAt);
+  return highest.empty() ? kNaN : quantile(highest, kPlateAt);
 }
 
 }  // namespace
 
 double plate_height_px(const cv::Mat& grey, bool bright) {
   constexpr int kBorder = 3, kSampled = 64;
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   constexpr double kLeastContrast = 0.4, kLightAt = 0.95, kFewestShare = 0.1;
   constexpr std::size_t kFewest = 8;
   if (grey.rows < 2 * kBorder || grey.cols < static_cast<int>(kFewest)) return kNaN;

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "imaging/link/min_cut.hpp"
+#include "imaging/link/point_grid.hpp"
 
 namespace twincell::imaging {
 
@@ -74,16 +75,6 @@ constexpr std::int64_t kAlone = Assignment::kAlone;
 constexpr std::int64_t kUnchanged = -2;  // in a proposal: unchanged
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-
-double square(PixelPoint a) {
-  return a.x_px * a.x_px + a.y_px * a.y_px;
-}
-PixelPoint operator-(PixelPoint a, PixelPoint b) {
-  return {a.x_px - b.x_px, a.y_px - b.y_px};
-}
-PixelPoint operator+(PixelPoint a, PixelPoint b) {
-  return {a.x_px + b.x_px, a.y_px + b.y_px};
-}
 
 /// The matching of one frame and the searches that improve it.
 class Matching {

@@ -1,8 +1,9 @@
 #include "imaging/link/initial_velocities.hpp"
 
 #include <cmath>
-#include <limits>
 #include <unordered_map>
+
+#include "core/constants.hpp"
 
 namespace twincell::imaging {
 
@@ -91,7 +92,6 @@ std::vector<PixelPoint> initial_velocities(const LinkOptions& options, int phase
   const auto& before = backward[1];
   const auto& ids = backward[0];
   if (roughness(options, seen, backward) >= roughness(options, seen, forward)) return {};
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   std::vector<PixelPoint> steps(seen[0].places.size(), {kNaN, kNaN});
   std::unordered_map<std::int64_t, PixelPoint> second;
   for (std::size_t k = 0; k < before.size(); ++k) second[before[k]] = seen[1].places[k];

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
+#include "core/constants.hpp"
 #include "core/error.hpp"
 #include "imaging/link/assign_open_tracks.hpp"
 #include "imaging/link/frame_match.hpp"
@@ -16,8 +16,6 @@
 namespace twincell::imaging {
 
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 void require_places(std::span<const PixelPoint> detections, std::int64_t frame) {
   constexpr double kFar = 1e9;  // px, beyond any camera

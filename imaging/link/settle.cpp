@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/constants.hpp"
 #include "imaging/link/link_costs.hpp"
 
 namespace twincell::imaging {
@@ -13,7 +14,6 @@ namespace twincell::imaging {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// The nearest of several partners, and the squared distances of the two nearest.
 struct Nearest {

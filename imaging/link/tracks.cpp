@@ -5,14 +5,13 @@
 #include <iterator>
 #include <limits>
 
+#include "core/constants.hpp"
 #include "imaging/link/link_costs.hpp"
 #include "imaging/link/point_grid.hpp"
 
 namespace twincell::imaging {
 
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Phase of a frame in the cycle, and whether it has one.
 struct CyclePhase {

@@ -24,7 +24,9 @@ struct LocatorOptions {
   std::string finder = "vote";  ///< one of finder_names()
   double diameter_px = 0;       ///< bead diameter, 3 .. 400; 0: determined from the first frame
   std::vector<double>
-      other_diameters_px;      ///< further diameters, 3 .. 400; not with DiscModel::shared_profile
+      other_diameters_px;  ///< further diameters, 3 .. 400; not with DiscModel::shared_profile
+  bool diameter_of_scale =
+      false;                   ///< diameter_px is the scale of the cell; nobody stated the size of the beads
   bool polarity_known = true;  ///< preprocess.bright is given; false: determined from the first frame
   PreprocessOptions preprocess;
   FindOptions find;      ///< its radius is set from the diameters

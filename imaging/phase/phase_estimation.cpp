@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "core/median.hpp"
+#include "imaging/phase/lost_frame_costs.hpp"
 
 namespace twincell::imaging {
 
@@ -20,8 +21,6 @@ constexpr std::size_t kMostFrames = 20000;   // used for the period; the phases 
 constexpr double kPeriodDip = 0.2;           // largest normalised difference at a period
 constexpr double kPeriodDipOfMedian = 0.03;  // the same for its median, which falls sooner
 constexpr double kGivenPeriodDip = 0.8;      // the same for a given period
-constexpr double kSlipCost = 12;             // of a dropped or doubled frame, natural log-odds
-constexpr double kFurtherDropCost = 2;       // of each further frame dropped there
 constexpr std::size_t kMostDropped = 20;     // in a row
 constexpr double kCertain = 40;              // odds beyond the evidence of any picture, treated as certainty
 

@@ -7,16 +7,15 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/constants.hpp"
 #include "core/median.hpp"
+#include "imaging/phase/lost_frame_costs.hpp"
 
 namespace twincell::imaging {
 
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr std::size_t kFewest = 8;
-constexpr double kSlipCost = 12;        // of a dropped or doubled frame, natural log-odds
-constexpr double kFurtherDropCost = 2;  // of each further frame dropped there
 constexpr double kMostOfFrame = 9;      // of one frame's deviation, so that one bad height makes no slip
 constexpr double kLeastScatter = 0.02;  // of the amplitude: a shaker is no exact sine
 

@@ -51,7 +51,7 @@ class Flattened : public FrameSource {
     if (!frames_->next(raw)) return false;
     if (raw.size() != flat_.size())
       refuse(*frames_, fmt::format("is {} x {} px, but the {} is {} x {} px.", raw.cols, raw.rows,
-                                   correction_ == Correction::divide ? "flat field" : "background",
+                                   correction_ == Correction::divide ? "flat field" : "background picture",
                                    flat_.cols, flat_.rows));
     // A new matrix, because the caller may keep the previous one.
     frame = cv::Mat();

@@ -20,8 +20,7 @@ constexpr std::array<double, 5> kRings = {0.08, 0.06, 0.05, 0.05, 0.05};
 constexpr double kLarge = 25;
 constexpr double kMinSeen = 0.4;
 constexpr std::size_t kSectors = 36;
-constexpr double kMinInterior = 0.3;  // as the opaque fit requires of a proposal
-constexpr double kMinSlope = 0.05;    // darkness per pixel, as the vote requires of a pixel
+constexpr double kMinSlope = 0.05;  // darkness per pixel, as the vote requires of a pixel
 
 struct EdgeSums {
   Eigen::Matrix3d a = Eigen::Matrix3d::Zero();

@@ -11,8 +11,6 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr double kMinInterior = 0.3;  // median darkness inside R/2 that a proposal must show
-
 /// Blur with which the fit begins, px^2. Out of focus: with a small starting blur the fit would first use
 /// sharp rims and estimate light and sizes from their residuals. With the whole measured blur, centres that
 /// are a third of a radius off would not converge.

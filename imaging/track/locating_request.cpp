@@ -49,6 +49,7 @@ LocatorOptions locator_of(const LocatingRequest& request, std::optional<double> 
   LocatorOptions locator = request.locator;
   if (request.diameters.empty()) {
     locator.diameter_px = scale_px.value_or(0);
+    locator.diameter_of_scale = scale_px.has_value();
   } else {
     locator.diameter_px = request.diameters.front();
     locator.other_diameters_px.assign(request.diameters.begin() + 1, request.diameters.end());

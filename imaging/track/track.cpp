@@ -12,6 +12,7 @@
 #include "imaging/cell/plate_row.hpp"
 #include "imaging/phase/trigger_list.hpp"
 #include "imaging/settings/configure_locator.hpp"
+#include "imaging/settings/size_of_scale.hpp"
 #include "imaging/track/locate_stack.hpp"
 
 namespace twincell::imaging {
@@ -146,6 +147,18 @@ double smallest_diameter(const LocatorOptions& locator) {
 
 }  // namespace
 
+std::string TrackedStack::scale_doubt(const CellDescription& cell) const {
+  constexpr double kOff = 0.1;
+  if (!cell.pixels_per_sigma) return {};
+  double largest = locator.diameter_px;
+  for (const double other : locator.other_diameters_px) largest = std::max(largest, other);
+  const double smallest = smallest_diameter(locator), scale = *cell.pixels_per_sigma;
+  if (scale >= (1 - kOff) * smallest && scale <= (1 + kOff) * largest) return {};
+  return fmt::format(
+      "sigma is {:g} px (camera.pixels_per_sigma), but the beads are {:.4g}{} px wide: {:.3g} sigma", scale,
+      smallest, largest > smallest ? fmt::format(" to {:.4g}", largest) : "", smallest / scale);
+}
+
 TrackedStack track_stack(FrameSource& stack, const LocatorOptions& given, LinkOptions link,
                          const CellDescription& cell, int threads, Progress& progress,
                          const PhaseSource& source, const std::filesystem::path& folder, const Region& region,
@@ -158,7 +171,9 @@ TrackedStack track_stack(FrameSource& stack, const LocatorOptions& given, LinkOp
   FramesAhead frames(seen);
   const LocatorOptions locator = [&] {
     const Stage configuring(times, "settings");
-    return configure_locator(frames, given, threads).locator;
+    const LocatorOptions found = configure_locator(frames, given, threads).locator;
+    if (given.diameter_of_scale) require_size_of_scale(frames, given, found, threads);
+    return found;
   }();
   const Detections detected =
       detect(frames, locator, cell, region, witnessed.size(), threads, progress, folder, times);

@@ -3,18 +3,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
+#include "core/constants.hpp"
 #include "core/error.hpp"
 #include "trajectory/recorded_motion.hpp"
 
 namespace twincell::sim {
 
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 /// A key that states the strength, and the exponent of A omega^power that is linear in time with it.
 struct Strength {

@@ -5,16 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 
+#include "core/constants.hpp"
 #include "core/error.hpp"
 #include "trajectory/motion_record.hpp"
 
 namespace twincell::sim {
 
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 /// The angular frequency that the keys state; 0 if they state none.
 double stated_omega(const DriveSpec& spec) {

@@ -405,6 +405,22 @@ TEST(Match, AStackWithoutBeadsIsRefused) {
     EXPECT_NE(ran.err.find("No bead was located in any frame"), std::string::npos) << ran.err;
   }
   EXPECT_FALSE(fs::exists(folder / "t.h5"));
+  // Of several stacks, it is named.
+  const Ran ran =
+      run_program({"match", stack, kStack, kStack / "CELL.toml", "-o", folder / "twins", "--no-film", "-q"});
+  EXPECT_EQ(ran.code, 3) << ran.err;
+  EXPECT_NE(ran.err.find(stack.string() + ": No bead was located in any frame"), std::string::npos)
+      << ran.err;
+}
+
+TEST(Match, AFilmThatIsNamedTwiceIsRefusedBeforeAnyWork) {
+  const TemporaryFolder folder;
+  fs::copy(kStack, folder / "copy", fs::copy_options::recursive);
+  const Ran ran =
+      run_program({"match", kStack, folder / "copy", kStack / "CELL.toml", "-o", folder / "twins", "-q"});
+  EXPECT_EQ(ran.code, 2) << ran.err;
+  EXPECT_NE(ran.err.find("begins with the same pictures as"), std::string::npos) << ran.err;
+  EXPECT_FALSE(fs::exists(folder / "twins"));
 }
 
 TEST(Match, AStatedDriveIsHeldAgainstTheBedWhereThePlateIsNotInThePicture) {

@@ -168,6 +168,25 @@ TEST_F(DemoFilm, AWrongOriginIsNoticed) {
   }
 }
 
+TEST_F(DemoFilm, AScaleThatTheBeadsContradictIsRefused) {
+  for (const std::string scale : {"24", "18", "16", "14", "9", "7"}) {
+    const Ran ran = track({"--frames", ":10", "--pixels-per-sigma", scale});
+    EXPECT_EQ(ran.code, 2) << ran.err;
+    EXPECT_NE(ran.err.find("camera.pixels_per_sigma: is " + scale + ", but the beads in the frames are 12"),
+              std::string::npos)
+        << ran.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "exp.h5"));
+  }
+  for (const std::string scale : {"11.5", "12.5"})
+    EXPECT_EQ(track({"--frames", ":10", "--pixels-per-sigma", scale}).code, 0) << scale;
+  const Ran other = track({"--frames", ":10", "--pixels-per-sigma", "24", "--diameter", "12"});
+  EXPECT_EQ(other.code, 0) << other.err;
+  EXPECT_NE(
+      other.err.find("sigma is 24 px (camera.pixels_per_sigma), but the beads are 12 px wide: 0.5 sigma"),
+      std::string::npos)
+      << other.err;
+}
+
 TEST_F(DemoFilm, TheOriginIsTwoNumbers) {
   const Ran ran = track({"--frames", ":3", "--pixels-per-sigma", "12", "--origin-px", "20", "186.2"});
   ASSERT_EQ(ran.code, 0) << ran.err;

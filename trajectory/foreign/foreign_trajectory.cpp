@@ -64,8 +64,9 @@ struct ForeignTrajectory::Impl {
   std::array<bool, 2> flat = {true, true};  ///< all beads have the same y; the same z
   std::optional<double> time_before;        ///< that the file states of the frame before, its unit
   bool replaces_times = false;
-  double spacing = 0;      ///< of the beads of the first frame, sigma
-  std::size_t beyond = 0;  ///< beads of the first frame beside the cell
+  double step_distance = 0, step_range = 0;  ///< smallest between two frames; first to last
+  double spacing = 0;                        ///< of the beads of the first frame, sigma
+  std::size_t beyond = 0;                    ///< beads of the first frame beside the cell
 
   /// Converts a vector from the axes of Snapshot to those of Box. In 2D, y of the snapshot is our z, and -z
   /// is our y.
@@ -278,6 +279,11 @@ ForeignTrajectory::ForeignTrajectory(const std::filesystem::path& path, const Fo
     d.learn(reader, s, first);
     if (d.n_frames > 0 && s.step <= first.step)
       reader.fail_at(s.line, fmt::format("step {} comes after step {}.", s.step, first.step));
+    if (d.n_frames > 0) {
+      const double distance = static_cast<double>(s.step) - static_cast<double>(first.step);
+      d.step_distance = d.step_distance > 0 ? std::min(d.step_distance, distance) : distance;
+      d.step_range += distance;
+    }
     first.step = s.step;
     if (d.o.phases_per_cycle > 0) {
       const std::int64_t n = d.phase_count(reader, s), per_cycle = d.o.phases_per_cycle;
@@ -314,6 +320,11 @@ std::size_t ForeignTrajectory::n_frames() const {
 
 bool ForeignTrajectory::is_flat() const {
   return impl_->info.n_beads > 1 && (impl_->flat[0] || impl_->flat[1]);
+}
+
+double ForeignTrajectory::missing_frames() const {
+  if (!(impl_->step_distance > 0)) return 0;
+  return std::floor(impl_->step_range / impl_->step_distance) + 1 - static_cast<double>(impl_->n_frames);
 }
 
 bool ForeignTrajectory::replaces_times() const {

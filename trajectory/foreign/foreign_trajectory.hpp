@@ -51,6 +51,8 @@ class ForeignTrajectory {
 
   [[nodiscard]] const TrajectoryInfo& info() const;
   [[nodiscard]] std::size_t n_frames() const;
+  /// Frames that the numbers of the steps leave out, if the smallest distance of two is that of all.
+  [[nodiscard]] double missing_frames() const;
   /// Whether several beads have the same y, or the same z (upwards for 3D), in all frames.
   [[nodiscard]] bool is_flat() const;
   /// Whether the times that the file states differ from those of the time step, which replace them.

@@ -328,6 +328,19 @@ TEST_F(ForeignFormats, UnitsAndSizesThatNoFileIsLikelyToHave) {
   EXPECT_TRUE(open({.timestep = 2})->replaces_times());
 }
 
+TEST_F(ForeignFormats, FramesThatTheirNumbersLeaveOut) {
+  const auto missing = [&](const std::string& frames) {
+    std::string text = "frame,particle,x,y\n";
+    for (const char frame : frames) text += std::string(1, frame) + ",1,2,-3\n";
+    put_file(file(), text);
+    return ForeignTrajectory(file(), foreign_format("csv", ""), {.timestep = 1}).missing_frames();
+  };
+  EXPECT_EQ(missing("0"), 0);
+  EXPECT_EQ(missing("0123"), 0);
+  EXPECT_EQ(missing("2468"), 0) << "every second frame was tracked";
+  EXPECT_EQ(missing("0137"), 4);
+}
+
 TEST_F(ForeignFormats, TrackMateTracks) {
   for (const int dimension : {2, 3}) {
     const MemoryTrajectory out = three_beads(dimension);

@@ -1,0 +1,10 @@
+#pragma once
+/// \file
+/// What a most likely path of phases pays for frames that are missing or doubled, in natural log-odds.
+
+namespace twincell::imaging {
+
+inline constexpr double kSlipCost = 12;        ///< of a dropped or doubled frame
+inline constexpr double kFurtherDropCost = 2;  ///< of each further frame dropped there
+
+}  // namespace twincell::imaging

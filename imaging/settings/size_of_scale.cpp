@@ -1,0 +1,69 @@
+#include "imaging/settings/size_of_scale.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/median.hpp"
+#include "imaging/settings/configure_locator.hpp"
+
+namespace twincell::imaging {
+
+namespace {
+
+/// What the beads of a frame cover, px^2, without the factor pi.
+double covered(const std::vector<Detection>& beads) {
+  double sum = 0;
+  for (const Detection& b : beads) sum += b.radius * b.radius;
+  return sum;
+}
+
+bool of_size(const Located& seen, double diameter_px) {
+  constexpr double kOff = 0.05, kDropped = 0.2;  // of the diameter; of the beads
+  if (static_cast<double>(seen.dropped.size()) > kDropped * static_cast<double>(seen.beads.size()))
+    return false;
+  if (seen.beads.empty()) return false;
+  std::vector<double> diameters;
+  for (const Detection& b : seen.beads) diameters.push_back(2 * b.radius);
+  return std::abs(upper_median(std::move(diameters)) - diameter_px) <= kOff * diameter_px;
+}
+
+}  // namespace
+
+void require_size_of_scale(FramesAhead& frames, const LocatorOptions& given, const LocatorOptions& settled,
+                           int threads) {
+  constexpr double kOff = 0.1, kNoLess = 0.95;
+  const double scale = given.diameter_px;
+  const cv::Mat* const first = frames.look(0);
+  if (first == nullptr) return;
+  const Located stated = locate(*first, settled);
+  if (of_size(stated, scale)) return;
+  LocatorOptions open = given;
+  open.diameter_px = 0;
+  LocatorOptions found;
+  try {
+    found = configure_locator(frames, open, threads).locator;
+  } catch (const NoDiscs&) {
+    return;
+  }
+  double smallest = found.diameter_px, largest = found.diameter_px;
+  for (const double other : found.other_diameters_px) {
+    smallest = std::min(smallest, other);
+    largest = std::max(largest, other);
+  }
+  if (scale >= (1 - kOff) * smallest && scale <= (1 + kOff) * largest) return;
+  // A wrong size found inside large beads covers less than they do.
+  if (covered(locate(*first, found).beads) < kNoLess * covered(stated.beads)) return;
+  throw ConfigError(
+      {.file = {}, .key = "camera.pixels_per_sigma"},
+      fmt::format("is {:g}, but the beads in the frames are {:.4g}{} px wide, and sigma is the bead "
+                  "diameter; correct "
+                  "the scale, or state the diameter of the beads (--diameter).",
+                  scale, smallest, largest > smallest ? fmt::format(" to {:.4g}", largest) : ""));
+}
+
+}  // namespace twincell::imaging
