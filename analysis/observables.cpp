@@ -12,6 +12,7 @@
 #include "analysis/observable/observable.hpp"
 #include "analysis/observable/timed_analysis.hpp"
 #include "core/cancellation.hpp"
+#include "core/counted.hpp"
 
 // The list: an observable is NAME.cpp in a room of analysis/, which defines NAME_observable.
 #define TWINCELL_OBSERVABLES(EACH) \
@@ -298,10 +299,11 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
   }
   if (used == 0)
     throw ConfigError({.file = trajectory.name(), .key = "discard"},
-                      fmt::format("leaving out {} cycles leaves no frame", options.discard_cycles));
+                      "leaving out " + counted(options.discard_cycles, "cycle") + " leaves no frame");
   if (cycles < options.cycles)
     throw ConfigError({.file = trajectory.name(), .key = "cycles"},
-                      fmt::format("{} cycles were requested, but the trajectory has {}{}", options.cycles,
+                      fmt::format("{} {} requested, but the trajectory has {}{}",
+                                  counted(options.cycles, "cycle"), options.cycles == 1 ? "was" : "were",
                                   cycles, options.discard_cycles > 0 ? " after the skipped ones" : ""));
 
   // Results: only those requested, because an observable may have more.

@@ -10,6 +10,7 @@
 #include "calibration/camera/size_statistics_figure.hpp"
 #include "cli/calibrate.hpp"
 #include "cli/stack_info.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "trajectory/formats/h5md_file.hpp"
@@ -53,7 +54,7 @@ void run(const BeadOptions& o, const Common& common) {
     if (const auto m = calibrated(cell, "cell.width")) width_error = m->standard_error[0];
   }
   const std::string data = data_hash(o.flags.stack);
-  const std::string method = fmt::format("{} discs in {} frames", c.sizes, c.frames);
+  const std::string method = counted(c.sizes, "disc") + " in " + counted(c.frames, "frame");
   const auto add = [&](const std::string& name, const calibration::Estimate& e, const std::string& how) {
     out.measured.push_back(
         {.name = name, .value = {e.value}, .standard_error = {e.error}, .method = how, .data = data});

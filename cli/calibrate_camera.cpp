@@ -15,6 +15,7 @@
 #include "cli/numbers.hpp"
 #include "cli/stack_info.hpp"
 #include "core/constants.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "imaging/stack/open_frames.hpp"
 
@@ -131,8 +132,8 @@ struct Scale {
 Scale measured_scale(const MeasuredCamera& m) {
   if (m.by_walls) return {*m.by_walls, kScaleByWalls};
   if (m.census)
-    return {m.census->diameter,
-            fmt::format("mean diameter of {} discs in {} frames", m.census->sizes, m.census->frames)};
+    return {m.census->diameter, fmt::format("mean diameter of {} in {}", counted(m.census->sizes, "disc"),
+                                            counted(m.census->frames, "frame"))};
   throw InputError({.file = m.options.flags.stack, .key = {}},
                    "gives no scale: no beads are found, and cell.width or a side wall is missing.");
 }

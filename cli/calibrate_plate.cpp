@@ -13,6 +13,7 @@
 #include "cli/calibrate.hpp"
 #include "cli/numbers.hpp"
 #include "core/atomic_file.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "imaging/stack/frame_source.hpp"
 
@@ -98,7 +99,7 @@ void add_quantities(CalibrationResult& out, const MeasuredPlate& m) {
     out.measured.push_back(
         {.name = name, .value = {value}, .standard_error = {error}, .method = method, .data = m.data});
   };
-  const std::string harmonic = fmt::format("harmonic fit to the plate's edge in {} frames", lock.locked);
+  const std::string harmonic = "harmonic fit to the plate's edge in " + counted(lock.locked, "frame");
   if (lock.frames_per_cycle > 0) {
     add("camera.frames_per_cycle", lock.frames_per_cycle, 0, "the nearest whole number to camera.period");
     add("camera.first_phase", lock.first_phase, 0, harmonic);

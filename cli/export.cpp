@@ -93,18 +93,9 @@ void export_beads(const ExportOptions& o, const Common& common) {
                                             : ExportUnits::reduced(trajectory.info());
   AtomicPath written(o.output, product);
   ProgressBar progress(common, "writing");
-  const std::size_t frames = [&] {
-    try {
-      return export_trajectory(trajectory, format, units, written.part(), output.stem().string(), progress,
-                               bond_orders(trajectory.info()));
-    } catch (const RunError& e) {  // names the unfinished file
-      std::string said = e.what();
-      const std::string part = written.part().string();
-      if (const std::size_t at = said.find(part); at != std::string::npos)
-        said.replace(at, part.size(), o.output);
-      throw RunError(said);
-    }
-  }();
+  const std::size_t frames =
+      export_trajectory(trajectory, format, units, written.part(), output.stem().string(), progress,
+                        bond_orders(trajectory.info()));
   written.commit();
   print_result(
       common,

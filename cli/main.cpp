@@ -18,6 +18,7 @@
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
 #include "cli/version.hpp"
+#include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/escape.hpp"
 #include "core/hdf5.hpp"
@@ -249,7 +250,8 @@ int run(int argc, char** argv) {
     program.exit(wanted);
     return finish_output();
   } catch (const Error& e) {
-    return complain(with_advice(with_dashes(program, e.what(), argc, argv), argc, argv), e.exit_code());
+    return complain(with_advice(with_dashes(program, in_final_names(e.what()), argc, argv), argc, argv),
+                    e.exit_code());
   } catch (const CLI::ParseError& e) {
     // An option that is misspelled is the cause, also where CLI11 misses the right one first.
     if (const std::string complaint = unknown_option(program, argc, argv); !complaint.empty())
@@ -267,7 +269,7 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const Error& e) {
-    return complain(e.what(), e.exit_code());
+    return complain(in_final_names(e.what()), e.exit_code());
   } catch (const std::bad_alloc&) {
     return complain_of_memory(argc, argv);
   } catch (const std::exception& e) {

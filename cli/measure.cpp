@@ -14,6 +14,7 @@
 #include "cli/plan_text.hpp"
 #include "cli/results_summary.hpp"
 #include "cli/verb.hpp"
+#include "core/counted.hpp"
 #include "core/json_text.hpp"
 #include "sim/run/make_solver.hpp"
 
@@ -74,8 +75,8 @@ Run run_once(const MeasureOptions& options, const std::vector<std::string>& assi
 
 std::string as_text(const Run& run, bool verbose, bool requested) {
   const json& about = run.about;
-  std::string s = fmt::format("start: {}; {} cycles after {} discarded\n", about["start"].get<std::string>(),
-                              about["cycles"].get<long>(), about["discarded"].get<long>());
+  std::string s = fmt::format("start: {}; {} after {} discarded\n", about["start"].get<std::string>(),
+                              counted(about["cycles"].get<long>(), "cycle"), about["discarded"].get<long>());
   if (about.contains("w")) s += fmt::format("W = {:.6g}\n", about["w"].get<double>());
   if (about.contains("until")) s += about["until"]["text"].get<std::string>() + "\n";
   if (about.contains("rest_height"))

@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <map>
+#include <mutex>
 #include <set>
 #include <sstream>
 #include <system_error>
@@ -94,7 +96,26 @@ void remove_listed(const fs::path& folder, const Manifest& manifest) {
     fs::remove(folders[i], ec);  // fails for a folder that is not empty
 }
 
+/// Final names of the outputs that this process has begun, by their temporary names. Those that were finished
+/// are removed.
+struct FinalNames {
+  std::mutex mutex;
+  std::map<std::string, std::string> of;
+};
+FinalNames& final_names() {
+  static FinalNames all;
+  return all;
+}
+
 }  // namespace
+
+std::string in_final_names(std::string message) {
+  const std::lock_guard guard(final_names().mutex);
+  for (const auto& [part, name] : final_names().of)
+    for (std::size_t at = 0; (at = message.find(part, at)) != std::string::npos; at += name.size())
+      message.replace(at, part.size(), name);
+  return message;
+}
 
 AtomicPath::AtomicPath(const fs::path& final_path, Product product)
     : given_(final_path), final_(require_output(final_path, product)), product_(std::move(product)) {
@@ -106,6 +127,8 @@ AtomicPath::AtomicPath(const fs::path& final_path, Product product)
   }
   lock_.emplace(final_);
   part_ = make_temporary(final_, product_.folder);
+  const std::lock_guard guard(final_names().mutex);
+  final_names().of.emplace(part_.string(), given_.string());
 }
 
 AtomicPath::AtomicPath(AtomicPath&& other) noexcept
@@ -119,7 +142,12 @@ AtomicPath::AtomicPath(AtomicPath&& other) noexcept
 }
 
 AtomicPath::~AtomicPath() {
-  if (!open_) return;
+  if (!open_) {
+    if (part_.empty()) return;  // moved from
+    const std::lock_guard guard(final_names().mutex);
+    final_names().of.erase(part_.string());
+    return;
+  }
   std::error_code ec;
   fs::remove_all(part_, ec);
   forget_temporary(part_);

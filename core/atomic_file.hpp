@@ -55,6 +55,10 @@ class AtomicPath {
   bool open_ = true;
 };
 
+/// A message in which outputs that were not finished have their final names, as the caller gave them, in
+/// place of the temporary ones.
+std::string in_final_names(std::string message);
+
 /// Writes `text` to a file atomically. An existing file is replaced under the rules of AtomicPath.
 /// \throws ConfigError, RunError as AtomicPath
 void write_text_file(const std::filesystem::path& path, const std::string& text,

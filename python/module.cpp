@@ -7,6 +7,7 @@
 #include <new>
 #include <thread>
 
+#include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
 #include "imaging/stack/opencv_errors.hpp"
@@ -64,7 +65,7 @@ void translate(std::exception_ptr thrown) {
   try {
     std::rethrow_exception(thrown);
   } catch (const Error& e) {
-    PyErr_SetString(class_of(e.exit_code()), e.what());
+    PyErr_SetString(class_of(e.exit_code()), in_final_names(e.what()).c_str());
   } catch (const std::bad_alloc&) {
     PyErr_NoMemory();
   } catch (const py::builtin_exception&) {

@@ -9,6 +9,7 @@
 #include "analysis/motion/tracer_line.hpp"
 #include "analysis/motion/tracers.hpp"
 #include "core/constants.hpp"
+#include "core/counted.hpp"
 
 namespace twincell::analysis {
 namespace {
@@ -309,8 +310,8 @@ class PhaseThresholds : public Observable {
     noise_result(
         "s_b_noise", floor,
         fmt::format("s_b of a bed at rest from the camera's noise alone, sigma_z/sqrt(N_t N_f) with {} "
-                    "tracers and {} cycles; {}",
-                    n_tracers_, used, against_threshold(floor)));
+                    "tracers and {}; {}",
+                    n_tracers_, counted(used, "cycle"), against_threshold(floor)));
     noise_result("s_j_noise", noise(), "contribution of the noise alone to s_j, added in quadrature");
   }
 
@@ -346,7 +347,7 @@ class PhaseThresholds : public Observable {
         fmt::format("spread of {} tracers about their mean at the beginning of each cycle, from cycle {}; {}",
                     n_tracers_, line_.cycle.front(), context_.tracer_choice);
     if (incomplete_starts_ > 0)
-      s_j.convention += fmt::format("; some tracers missing in {} cycles", incomplete_starts_);
+      s_j.convention += "; some tracers missing in " + counted(incomplete_starts_, "cycle");
     if (jumps_ > 0)
       s_j.convention += fmt::format("; {} jumps of a tracer by more than sigma/2 within one cycle", jumps_);
     s_j.no_interval = "single cycles; s_c has the interval of their mean square";
@@ -371,7 +372,7 @@ class PhaseThresholds : public Observable {
     all.push_back(std::move(s_c));
     if (first == spread.end()) {
       all.push_back(absent_result("cycle_of_convection",
-                                  fmt::format("s_j does not exceed sigma in {} cycles", spread.size()), b1));
+                                  "s_j does not exceed sigma in " + counted(spread.size(), "cycle"), b1));
       return;
     }
     Result onset{.name = "cycle_of_convection", .unit = "cycles", .n = squares.n(), .n_of = "cycles"};

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/constants.hpp"
+#include "core/counted.hpp"
 
 namespace twincell::analysis {
 namespace {
@@ -122,8 +123,8 @@ std::string drift_name(Drift drift) {
 DriftVerdict judge_drift(const TracerLine& line, double noise) {
   DriftVerdict verdict;
   if (line.n() < kFewestCycles || line.n_tracers < 2) {
-    verdict.reason = fmt::format("{} cycles and {} tracers; at least {} and 2 are needed", line.n(),
-                                 line.n_tracers, kFewestCycles);
+    verdict.reason = fmt::format("{} and {}; at least {} and 2 are needed", counted(line.n(), "cycle"),
+                                 counted(line.n_tracers, "tracer"), kFewestCycles);
     return verdict;
   }
   const std::size_t middle = line.n() / 2, end = line.n() - 1;

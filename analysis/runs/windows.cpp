@@ -8,6 +8,7 @@
 
 #include "analysis/motion/centre_of_mass.hpp"
 #include "core/cancellation.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/escape.hpp"
 
@@ -115,7 +116,8 @@ std::vector<Window> analyze_windows(const TrajectorySource& trajectory, const An
   const std::vector<Place> places = places_of(trajectory, options.discard_cycles, cycles, no_window);
   if (left_out != nullptr) *left_out = no_window;
   if (places.empty())
-    throw ConfigError(where, fmt::format("no {} cycles of the trajectory fill a window", cycles));
+    throw ConfigError(where,
+                      fmt::format("no window of {} fits into the trajectory", counted(cycles, "cycle")));
   AnalysisOptions one = options;
   one.discard_cycles = 0;
   one.cycles = cycles;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/counted.hpp"
+
 namespace twincell::calibration {
 
 analysis::Figure size_statistics_figure(const SizeStatistics& census, double unit_px) {
@@ -27,7 +29,8 @@ analysis::Figure size_statistics_figure(const SizeStatistics& census, double uni
       "border\nset arrow from {:.6g}, graph 0 to {:.6g}, graph 1 nohead lw 2 lc rgb vermilion\n"
       "plot 'beads.dat' using 1:2 with boxes lc rgb blue notitle\n",
       px ? "px" : "σ", width, census.diameter.value * unit, census.diameter.value * unit);
-  f.caption = fmt::format("{} discs in {} frames; the line is the mean", census.sizes, census.frames);
+  f.caption = fmt::format("{} in {}; the line is the mean", counted(census.sizes, "disc"),
+                          counted(census.frames, "frame"));
   return f;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/constants.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 
 namespace twincell::calibration {
@@ -35,8 +36,8 @@ class Finder {
     // Velocities from differences need one more frame on either side.
     const std::size_t margin = velocities ? 0 : 1, n = (source_.n_frames() + stride_ - 1) / stride_;
     if (n < 2 + 2 * margin)
-      throw InputError({.file = source_.name(), .key = {}},
-                       fmt::format("has {} frames; collisions need {} or more.", n, 2 + 2 * margin));
+      throw InputError({.file = source_.name(), .key = {}}, fmt::format("has {}; collisions need {} or more.",
+                                                                        counted(n, "frame"), 2 + 2 * margin));
     std::vector<Frame> frames(2 + 2 * margin);
     for (std::size_t f = 0; f + frames.size() <= n; ++f) {
       for (std::size_t k = 0; k < frames.size(); ++k)

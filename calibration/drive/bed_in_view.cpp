@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "calibration/drive/bed_drive.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
 #include "imaging/phase/phase_estimation.hpp"
@@ -94,7 +95,7 @@ PlateOfBed plate_of_bed(const BeadFrames& beads, double diameter, double gamma) 
     if (t >= rest->from && std::isfinite(plate.heights[f])) resting.push_back(f);
   }
   constexpr std::size_t kFewest = 8;
-  if (resting.size() < kFewest) refuse(fmt::format("rests on the plate in only {} frames", resting.size()));
+  if (resting.size() < kFewest) refuse("rests on the plate in only " + counted(resting.size(), "frame"));
   Eigen::MatrixX3d model(static_cast<Eigen::Index>(resting.size()), 3);
   Eigen::VectorXd seen(static_cast<Eigen::Index>(resting.size()));
   for (std::size_t k = 0; k < resting.size(); ++k) {

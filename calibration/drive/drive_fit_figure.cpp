@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "analysis/report/figure_style.hpp"
+#include "core/counted.hpp"
 
 namespace twincell::calibration {
 
@@ -49,7 +50,7 @@ analysis::Figure drive_fit_figure(const DriveFit& lock) {
       others ? ", 'plate.dat' index 2 using 1:2 with points pt 2 ps 0.9 lc rgb vermilion title 'out of lock'"
              : "",
       analysis::figure_style::axes(phases, off), analysis::figure_style::kLine);
-  f.caption = fmt::format("{} frames locked, {} out of lock", lock.locked, lock.out_of_lock);
+  f.caption = fmt::format("{} locked, {} out of lock", counted(lock.locked, "frame"), lock.out_of_lock);
   return f;
 }
 

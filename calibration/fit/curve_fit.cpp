@@ -40,7 +40,7 @@ double error_of(const DataPoint& p, bool logarithmic) {
 Selected select(const Law& law, const std::vector<DataPoint>& points, const FitWindow& window,
                 CurveFit& result) {
   Selected selected;
-  double low = INFINITY, high = -INFINITY;
+  double low = INFINITY, high = -INFINITY, largest_x = 0, largest_y = 0;
   bool errors = true;
   for (const DataPoint& p : points) {
     PointUse use = PointUse::used;
@@ -72,7 +72,17 @@ Selected select(const Law& law, const std::vector<DataPoint>& points, const FitW
                                    "overflow",
                                    p.x, p.y, kMost));
     selected.points.push_back({p.x, law.logarithmic ? std::log(p.y) : p.y, error});
+    largest_x = std::max(largest_x, std::abs(p.x));
+    largest_y = std::max(largest_y, std::abs(selected.points.back().y));
   }
+  // All of them so small that their squares are 0 would give errors of 0.
+  constexpr double kLeast = 1e-150;
+  if (const double largest = std::min(largest_x > 0 ? largest_x : 1, largest_y > 0 ? largest_y : 1);
+      largest < kLeast)
+    throw InputError(
+        {.file = {}, .key = "points"},
+        fmt::format("no {} is larger than {:g} in magnitude; use another unit, or the squares are 0",
+                    largest == largest_x ? "x" : "y", largest));
   selected.weighted = errors;
   if (!errors)
     for (FitPoint& p : selected.points) p.error = 1;

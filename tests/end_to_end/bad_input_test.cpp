@@ -127,7 +127,10 @@ TEST_F(BadInput, NumbersThatNoFitCanHold) {
   for (const char* law : {"line", "constant", "exponential"})
     expect_refusal({"fit", at("huge.csv"), "--law", law, "-o", at("fit")}, kInput,
                    {"huge.csv", "1e+308", "1e+150"});
-  expect_only({"huge.csv"});
+  write(at("tiny.csv"), "x,y\n1,1e-200\n2,2.1e-200\n3,2.9e-200\n4,4e-200\n");
+  expect_refusal({"fit", at("tiny.csv"), "--law", "line", "-o", at("fit")}, kInput,
+                 {"tiny.csv", "no y is larger than 4e-200"});
+  expect_only({"huge.csv", "tiny.csv"});
 }
 
 TEST_F(BadInput, Trajectories) {

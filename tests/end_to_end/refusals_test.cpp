@@ -343,7 +343,7 @@ TEST_F(Refusals, WordsThatDoNotGoTogether) {
        {"analyze @t.h5 --table @new.csv", kUsage, {"--table", "--window-cycles"}},
        {"analyze @t.h5 --window-cycles 1 -o @new.h5", kUsage, {"--output", "--table"}},
        {"analyze @t.h5 --window-cycles 1 --cycles 2", kUsage, {"--cycles", "windows"}},
-       {"analyze @t.h5 --window-cycles 999", kUsage, {"no 999 cycles", "fill a window"}},
+       {"analyze @t.h5 --window-cycles 999", kUsage, {"no window of 999 cycles fits"}},
        {"draw @t.h5 -o @new.html --contacts", kUsage, {"--contacts", "simulate --contacts"}},
        {"draw @t.h5 -o @new.html --pixels-per-sigma 3", kUsage, {"--pixels-per-sigma", "page"}},
        {"draw @t.h5 -o @new.htm", kUsage, {"--output", ".html"}},

@@ -120,7 +120,7 @@ TEST(Windows, ImpossibleOnesAreRefused) {
     return complaint_of([&] { analyze_windows(run, options, cycles); });
   };
   EXPECT_NE(said({}, 0).find("a window of 0 cycles is empty"), std::string::npos);
-  EXPECT_NE(said({}, 11).find("no 11 cycles of the trajectory fill a window"), std::string::npos);
+  EXPECT_NE(said({}, 11).find("no window of 11 cycles fits into the trajectory"), std::string::npos);
   EXPECT_NE(said({.cycles = 2}, 3).find("cycles"), std::string::npos);
   run.info().columns.phase = false;
   EXPECT_NE(said({}, 3).find("no cycle number"), std::string::npos);
