@@ -85,7 +85,7 @@ void check(const AnalysisOptions& options) {
     throw ConfigError({.file = {}, .key = "cycles"},
                       fmt::format("{} cycles cannot be used; at least 1, or 0 for all", options.cycles));
   if (options.neighbour_cutoff)
-    require_range({.file = {}, .key = "cutoff"}, *options.neighbour_cutoff, 0, 100, true);
+    require_range({.file = {}, .key = "cutoff"}, *options.neighbour_cutoff, 0, 5, true);
   require_range({.file = {}, .key = "cell_radius"}, options.cell_radius, 0, 100, true);
   require_range({.file = {}, .key = "field_cell"}, options.field_cell, 0.1, 100);
   if (options.rest_height) require_range({.file = {}, .key = "rest_height"}, *options.rest_height, 0, 1e4);

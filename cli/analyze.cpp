@@ -54,12 +54,35 @@ void draw_into(const std::vector<analysis::Figure>& figures, const std::string& 
   folder.commit();
 }
 
+/// \throws ConfigError if the bed at rest has another number of beads (10 %) or another width (2 %) than one
+/// of the runs
+void require_same_bed(const H5mdReader& rest, const std::vector<std::string>& runs) {
+  constexpr double kBeads = 0.1, kWidth = 0.02;
+  const auto differ = [](double a, double b, double share) {
+    return std::abs(a - b) > share * std::max(a, b);
+  };
+  Frame at_rest, frame;
+  rest.read(0, at_rest);
+  for (const std::string& name : runs) {
+    const H5mdReader run(name);
+    run.read(0, frame);
+    const auto n = static_cast<double>(at_rest.n_present()), m = static_cast<double>(frame.n_present());
+    const double w = rest.info().box.size().x(), v = run.info().box.size().x();
+    if (differ(n, m, kBeads) || differ(w, v, kWidth))
+      throw ConfigError({.file = rest.name(), .key = "--rest-height"},
+                        fmt::format("is the bed of {:g} beads in a width of {:.4g}; {} has {:g} in {:.4g}.",
+                                    n, w, name, m, v));
+  }
+}
+
 /// Returns the number in `said`, or the mean height of the centre of mass above the plate in the trajectory
 /// that `said` names, which must show a bed at rest.
-double rest_height_of(const std::string& said) {
+/// \param runs trajectories whose beds it is the reference of
+double rest_height_of(const std::string& said, const std::vector<std::string>& runs) {
   double number = 0;
   if (CLI::detail::lexical_cast(said, number)) return number;
   const H5mdReader trajectory(said);
+  require_same_bed(trajectory, runs);
   double sum = 0, low = INFINITY, high = -INFINITY;
   Frame frame;
   for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
@@ -294,7 +317,8 @@ void add_analyze(CLI::App& program, Common& common) {
                   "Largest distance between neighbours, sigma; default: 1.2, for experiments 1.3");
   add_profile_option(verb, options->profile);
   verb.callback([&common, options] {
-    if (!options->rest_height.empty()) options->analysis.rest_height = rest_height_of(options->rest_height);
+    if (!options->rest_height.empty())
+      options->analysis.rest_height = rest_height_of(options->rest_height, options->trajectories);
     options->analysis.s_b = analysis::s_b_named(options->s_b);
     options->analysis.neighbours = analysis::neighbour_rule_named(options->neighbours);
     run(common, *options);

@@ -34,7 +34,7 @@ twin::ComparingOptions comparing_options(const ComparingFlags& flags, const Comm
   require_range({.file = {}, .key = "--tolerance"}, flags.tolerance, 0, 0.5);
   // Refused before the simulations, although the analysis checks it again.
   if (flags.neighbour_cutoff)
-    require_range({.file = {}, .key = "--cutoff"}, *flags.neighbour_cutoff, 0, 100, true);
+    require_range({.file = {}, .key = "--cutoff"}, *flags.neighbour_cutoff, 0, 5, true);
   twin::ComparingOptions options;
   options.analysis.discard_cycles = flags.discard_cycles;
   options.analysis.neighbour_cutoff = flags.neighbour_cutoff;

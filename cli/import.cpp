@@ -12,6 +12,7 @@
 #include "cli/verb.hpp"
 #include "core/counted.hpp"
 #include "core/error.hpp"
+#include "imaging/cell/implausible.hpp"
 #include "trajectory/foreign/foreign_trajectory.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
@@ -42,6 +43,29 @@ void note_doubts(const Common& common, const ForeignTrajectory& source, double s
          fmt::format("the numbers of the steps or frames leave out {:g} {} between the {} of the file.",
                      missing, missing > 1 ? "frames" : "frame", source.n_frames()));
   if (source.replaces_times()) note(common, "the times of the file are replaced by those of --timestep.");
+}
+
+/// Notes beads whose centres are beneath the plate: a wrong direction of y, drive, phase, origin or unit.
+void note_below_plate(const Common& common, const std::string& file) {
+  constexpr double kShare = 0.002;
+  const H5mdReader trajectory(file);
+  if (!trajectory.info().columns.plate_height || trajectory.info().drive->axis != Axis::z) return;
+  std::size_t below = 0, all = 0;
+  Frame frame;
+  for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
+    trajectory.read(f, frame);
+    for (std::size_t i = 0; i < frame.position.size(); ++i) {
+      if (!frame.present(i)) continue;
+      ++all;
+      below += frame.position[i].z() < frame.plate_height ? 1 : 0;
+    }
+  }
+  if (static_cast<double>(below) > kShare * static_cast<double>(all))
+    note(common,
+         fmt::format(
+             "{:.3g} % of the beads lie beneath the plate: the direction of y (--y-up), the origin, or "
+             "amplitude, frequency or phase of the drive is wrong.",
+             100.0 * static_cast<double>(below) / static_cast<double>(all)));
 }
 
 void run(ImportOptions& o, const Common& common) {
@@ -76,6 +100,9 @@ void run(ImportOptions& o, const Common& common) {
   if (info.box.dimension == 3 && source.is_flat())
     note(common, "all beads are in one plane in every frame; for a two-dimensional system: --dimension 2.");
   note_doubts(common, source, o.foreign.sigma);
+  for (const std::string& doubt : imaging::implausible_numbers(imaging::shaken_cell(info.scale, info.drive)))
+    note(common, doubt);
+  note_below_plate(common, o.output);
   if (!info.drive) note(common, "no drive was given: the phases and the height of the plate are absent.");
   print_result(
       common,

@@ -18,6 +18,7 @@
 #include "core/cancellation.hpp"
 #include "core/counted.hpp"
 #include "core/error.hpp"
+#include "imaging/cell/implausible.hpp"
 #include "sim/accuracy/step_error.hpp"
 #include "sim/run/checkpoint_folder.hpp"
 #include "sim/run/make_solver.hpp"
@@ -245,6 +246,18 @@ void run_into(H5mdWriter& writer, sim::Simulation& run, Progress& progress, sim:
   folder->gather(writer, [&] { writer.finish(); });
 }
 
+/// Notes on numbers of a scene with a scale that most likely have a wrong unit.
+void note_doubts(const sim::Scene& scene, const Common& common) {
+  if (!scene.scale.sigma_m || !(scene.g() > 0)) return;
+  if (scene.scale.gravity_m_s2 && scene.g() != 1)
+    note(common,
+         fmt::format("cell.gravity = {:g} is in units of scale.gravity_m_s2: gravity is {:.4g} m/s^2.",
+                     scene.g(), scene.g() * *scene.scale.gravity_m_s2));
+  for (const std::string& doubt :
+       imaging::implausible_numbers(imaging::shaken_cell(scene.scale, scene.drive, scene.g())))
+    note(common, doubt);
+}
+
 void run_simulate(const SimulateOptions& options, const Common& common) {
   Profile profile(options.profile);
   std::vector<std::string> assignments = with_seed(options.assignments, common);
@@ -257,6 +270,7 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
                              "`simulate` runs all {} cycles.",
                              scene.cycles));
 
+  note_doubts(scene, common);
   if (is_finished(scene, options)) {
     note(common, options.output + " is finished; there is nothing to resume.");
     return;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <set>
 
 #include "core/counted.hpp"
 #include "core/error.hpp"
@@ -56,12 +57,20 @@ void refuse_repeated(const std::vector<fs::path>& stacks) {
 /// Of `match`, the folder of the comparison beside those of the stacks.
 constexpr const char* kTaken = "report";
 
-/// Whether a folder contains cell files, but is not a stack with its own CELL.toml.
+/// Whether a folder contains cell files and no picture but that of each, as `new` writes it. A stack may
+/// contain its own CELL.toml and notes.
 bool is_folder_of_cells(const fs::path& folder) {
+  static const std::set<std::string> kPictures = {".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp", ".pgm"};
   std::error_code ec;
   if (!fs::is_directory(folder, ec) || fs::exists(folder / "CELL.toml", ec)) return false;
-  return std::any_of(fs::directory_iterator(folder, ec), fs::directory_iterator(),
-                     [](const fs::directory_entry& e) { return e.path().extension() == ".toml"; });
+  bool cells = false;
+  for (const auto& entry : fs::directory_iterator(folder, ec)) {
+    fs::path file = entry.path();
+    cells = cells || file.extension() == ".toml";
+    if (kPictures.contains(file.extension().string()) && !fs::exists(file.replace_extension(".toml"), ec))
+      return false;
+  }
+  return cells;
 }
 
 }  // namespace

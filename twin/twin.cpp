@@ -94,6 +94,13 @@ FirstPacking find_first_packing(const TrajectorySource& trajectory) {
   if (b.frame == trajectory.n_frames())
     throw InputError({.file = trajectory.name()}, "no frame is at phase 0, where a simulation begins.");
   b.beads = frame.n_present();
+  if (b.beads == 0)
+    throw InputError(
+        {.file = trajectory.name()},
+        fmt::format(
+            "frame {}, the first at phase 0, shows no bead, and the twin would begin with none; "
+            "twincell locate STACK --view page.html shows what is located (--refine, --dark, --bright).",
+            b.frame));
   std::vector<double> errors;
   for (std::size_t i = 0; i < frame.position_sigma.size(); ++i)
     if (frame.present(i))

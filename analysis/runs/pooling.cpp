@@ -17,6 +17,7 @@
 #include "analysis/statistics/statistics.hpp"
 #include "core/constants.hpp"
 #include "core/error.hpp"
+#include "trajectory/gravity_of_run.hpp"
 
 namespace twincell::analysis {
 namespace {
@@ -310,10 +311,17 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
     numbers("the number of phases per cycle", p.phases_per_cycle, q.phases_per_cycle, 0);
     words("drive:", p.drive ? "known" : "not known", q.drive ? "known" : "not known");
     if (p.drive) {
-      numbers("Gamma", p.drive->gamma(), q.drive->gamma(), kSameDrive);
+      numbers("Gamma", p.drive->gamma(gravity_of(p)), q.drive->gamma(gravity_of(q)), kSameDrive);
+      numbers("the gravity", gravity_of(p), gravity_of(q), kSameDrive);
       numbers("omega", p.drive->omega, q.drive->omega, kSameDrive);
       words("the drive is", p.drive->formula(), q.drive->formula());
     }
+    const auto sides = [](const TrajectoryInfo& t) {
+      return t.box.boundary[0] == Boundary::wall       ? "walls"
+             : t.box.boundary[0] == Boundary::periodic ? "periodic"
+                                                       : "open";
+    };
+    words("the sides are", sides(p), sides(q));
     numbers("the cell's width", p.box.size().x(), q.box.size().x(), kSameDrive);
     numbers("the number of beads", static_cast<double>(ends[0].first.n_present()),
             static_cast<double>(ends[i].first.n_present()), kSameBeads);

@@ -1,0 +1,93 @@
+// Runs that are not what their user takes them for: other gravity, other walls, another bed, beads beneath
+// the plate.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace twincell;
+
+namespace {
+
+class DoubtfulRuns : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::ofstream(folder_ / "scene.toml")
+        << "preset = \"fortini-huang-2015\"\n[cell]\nwidth_sigma = 6.0\n[beads]\ncount = 18\n[drive]\ngamma "
+           "= "
+           "0.75\n"
+           "[time]\nsteps_per_contact = 20\ndiscard = 0\ncycles = 2\nphases = 20\n";
+  }
+  Ran simulate(const std::string& name, const std::vector<std::string>& set) {
+    std::vector<std::string> words = {"simulate", folder_ / "scene.toml", "-o", folder_ / name};
+    for (const std::string& one : set) words.insert(words.end(), {"--set", one});
+    return run_program(words);
+  }
+  void refused(const std::vector<std::string>& words, const std::string& why) {
+    const Ran ran = run_program(words);
+    EXPECT_EQ(ran.code, 2) << ran.out;
+    EXPECT_NE(ran.err.find(why), std::string::npos) << ran.err;
+  }
+  const TemporaryFolder folder_;
+};
+
+}  // namespace
+
+TEST_F(DoubtfulRuns, OtherGravityOrWallsAreNotPooled) {
+  ASSERT_EQ(simulate("a.h5", {}).code, 0);
+  ASSERT_EQ(simulate("half.h5", {"cell.gravity=0.5"}).code, 0);
+  ASSERT_EQ(simulate("open.h5", {"cell.sides=\"periodic\""}).code, 0);
+  // Gamma = A omega^2/g is 0.75 in both, with half the amplitude; K_m = Gamma A is then half as large.
+  const Ran info = run_program({"info", folder_ / "half.h5"});
+  EXPECT_NE(info.out.find("Gamma = 0.75, K_m = 0.28125"), std::string::npos) << info.out;
+  refused({"analyze", folder_ / "a.h5", folder_ / "half.h5", "--only", "s_b"},
+          "the gravity is 1 there, 0.5 here");
+  refused({"analyze", folder_ / "a.h5", folder_ / "open.h5", "--only", "s_b"},
+          "the sides are walls there, periodic here");
+}
+
+TEST_F(DoubtfulRuns, TheBedAtRestIsThatOfTheRun) {
+  ASSERT_EQ(simulate("run.h5", {}).code, 0);
+  ASSERT_EQ(simulate("rest.h5", {"drive.gamma=0"}).code, 0);
+  ASSERT_EQ(simulate("other.h5", {"drive.gamma=0", "beads.count=12"}).code, 0);
+  const Ran ran = run_program(
+      {"analyze", folder_ / "run.h5", "--only", "delta_h_cm", "--rest-height", folder_ / "rest.h5"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  refused({"analyze", folder_ / "run.h5", "--only", "delta_h_cm", "--rest-height", folder_ / "other.h5"},
+          "is the bed of 12 beads in a width of 6");
+}
+
+TEST_F(DoubtfulRuns, ImportedBeadsBeneathThePlateAreNoted) {
+  ASSERT_EQ(simulate("run.h5", {}).code, 0);
+  ASSERT_EQ(run_program({"export", folder_ / "run.h5", "--to", "csv", "-o", folder_ / "run.csv"}).code, 0);
+  const auto note = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"import",  folder_ / "run.csv", "-o", folder_ / "in.h5",
+                                      "--force", "--drive-omega",     "1",  "--frames-per-cycle",
+                                      "20"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Ran ran = run_program(words);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return ran.err;
+  };
+  const std::string beneath = "of the beads lie beneath the plate";
+  EXPECT_EQ(note({"--drive-amplitude", "0.75"}).find(beneath), std::string::npos);
+  EXPECT_NE(note({"--drive-amplitude", "0.75", "--y-up"}).find(beneath), std::string::npos);
+  EXPECT_NE(note({"--drive-amplitude", "1.5"}).find(beneath), std::string::npos) << "peak to peak";
+  EXPECT_NE(note({"--drive-amplitude", "0.75", "--phase-of-step-zero", "0.75"}).find(beneath),
+            std::string::npos);
+}
+
+TEST_F(DoubtfulRuns, UnitsOfAScaleAreNoted) {
+  const Ran si = simulate("si.h5", {"scale.sigma_mm=2", "scale.gravity_m_s2=9.81", "cell.gravity=9.81"});
+  EXPECT_NE(si.err.find("cell.gravity = 9.81 is in units of scale.gravity_m_s2: gravity is 96.24 m/s^2"),
+            std::string::npos)
+      << si.err;
+  const Ran metre = simulate("metre.h5", {"scale.sigma_m=2", "scale.gravity_m_s2=9.81"});
+  EXPECT_NE(metre.err.find("the bead diameter is 2e+03 mm"), std::string::npos) << metre.err;
+  EXPECT_EQ(simulate("right.h5", {"scale.sigma_mm=2", "scale.gravity_m_s2=9.81"}).err.find("note"),
+            std::string::npos);
+}
