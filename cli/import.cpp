@@ -45,28 +45,36 @@ void note_doubts(const Common& common, const ForeignTrajectory& source, double s
   if (source.replaces_times()) note(common, "the times of the file are replaced by those of --timestep.");
 }
 
-/// Notes beads whose centres are beneath the plate: a wrong direction of y, drive, phase, origin or unit.
-void note_below_plate(const Common& common, const std::string& file) {
-  constexpr double kShare = 0.002;
-  const H5mdReader trajectory(file);
-  if (!trajectory.info().columns.plate_height || trajectory.info().drive->axis != Axis::z) return;
-  std::size_t below = 0, all = 0;
-  Frame frame;
-  for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
-    trajectory.read(f, frame);
-    for (std::size_t i = 0; i < frame.position.size(); ++i) {
+/// Hands frames on to a writer, and counts beads whose centres are beneath the plate: the sign of a wrong
+/// direction of y, drive, phase, origin or unit.
+class BeneathPlate : public TrajectorySink {
+ public:
+  BeneathPlate(TrajectorySink& writer, const TrajectoryInfo& info)
+      : writer_(writer), counts_(info.drive && info.drive->axis == Axis::z) {}
+  void append(const Frame& frame) override {
+    for (std::size_t i = 0; counts_ && i < frame.position.size(); ++i) {
       if (!frame.present(i)) continue;
-      ++all;
-      below += frame.position[i].z() < frame.plate_height ? 1 : 0;
+      ++all_;
+      below_ += frame.position[i].z() < frame.plate_height ? 1 : 0;
     }
+    writer_.append(frame);
   }
-  if (static_cast<double>(below) > kShare * static_cast<double>(all))
+  void note_many(const Common& common) const {
+    constexpr double kShare = 0.002;
+    const auto below = static_cast<double>(below_), all = static_cast<double>(all_);
+    if (below <= kShare * all) return;
     note(common,
          fmt::format(
              "{:.3g} % of the beads lie beneath the plate: the direction of y (--y-up), the origin, or "
              "amplitude, frequency or phase of the drive is wrong.",
-             100.0 * static_cast<double>(below) / static_cast<double>(all)));
-}
+             100 * below / all));
+  }
+
+ private:
+  TrajectorySink& writer_;
+  bool counts_;
+  std::size_t below_ = 0, all_ = 0;
+};
 
 void run(ImportOptions& o, const Common& common) {
   if (is_trajectory(o.file))
@@ -95,14 +103,15 @@ void run(ImportOptions& o, const Common& common) {
   info.provenance_json = provenance.to_json();
   H5mdWriter writer(o.output, info);
   ProgressBar writing(common, "writing");
-  source.copy_to(writer, writing);
+  BeneathPlate beneath(writer, info);
+  source.copy_to(beneath, writing);
   writer.finish();
   if (info.box.dimension == 3 && source.is_flat())
     note(common, "all beads are in one plane in every frame; for a two-dimensional system: --dimension 2.");
   note_doubts(common, source, o.foreign.sigma);
   for (const std::string& doubt : imaging::implausible_numbers(imaging::shaken_cell(info.scale, info.drive)))
     note(common, doubt);
-  note_below_plate(common, o.output);
+  beneath.note_many(common);
   if (!info.drive) note(common, "no drive was given: the phases and the height of the plate are absent.");
   print_result(
       common,
