@@ -30,8 +30,8 @@ function(twincell_orchestrates target)
 endfunction()
 
 # twincell_in_batches(TARGET): compiles the target's files eight at a time. They spend most of their time on the templates
-# of the same libraries, so that a whole build takes half the time; one changed file takes three times as long. A name
-# in an unnamed namespace must differ from those of the other files. Debug builds compile each file by itself.
+# of the same libraries, which are then read once in eight; but one changed file costs its whole batch. A name in an unnamed
+# namespace must differ from those of the other files. Debug builds compile each file by itself.
 function(twincell_in_batches target)
   if(NOT CMAKE_BUILD_TYPE STREQUAL Debug)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)

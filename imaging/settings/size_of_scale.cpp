@@ -34,9 +34,21 @@ bool of_size(const Located& seen, double diameter_px) {
 
 }  // namespace
 
+std::string sizes_unlike(const LocatorOptions& beads, double pixels_per_sigma) {
+  constexpr double kOff = 0.1;
+  double smallest = beads.diameter_px, largest = beads.diameter_px;
+  for (const double other : beads.other_diameters_px) {
+    smallest = std::min(smallest, other);
+    largest = std::max(largest, other);
+  }
+  if (pixels_per_sigma >= (1 - kOff) * smallest && pixels_per_sigma <= (1 + kOff) * largest) return {};
+  return largest > smallest ? fmt::format("{:.4g} to {:.4g}", smallest, largest)
+                            : fmt::format("{:.4g}", smallest);
+}
+
 void require_size_of_scale(FramesAhead& frames, const LocatorOptions& given, const LocatorOptions& settled,
                            int threads) {
-  constexpr double kOff = 0.1, kNoLess = 0.95;
+  constexpr double kNoLess = 0.95;
   const double scale = given.diameter_px;
   const cv::Mat* const first = frames.look(0);
   if (first == nullptr) return;
@@ -50,20 +62,15 @@ void require_size_of_scale(FramesAhead& frames, const LocatorOptions& given, con
   } catch (const NoDiscs&) {
     return;
   }
-  double smallest = found.diameter_px, largest = found.diameter_px;
-  for (const double other : found.other_diameters_px) {
-    smallest = std::min(smallest, other);
-    largest = std::max(largest, other);
-  }
-  if (scale >= (1 - kOff) * smallest && scale <= (1 + kOff) * largest) return;
+  const std::string sizes = sizes_unlike(found, scale);
+  if (sizes.empty()) return;
   // A wrong size found inside large beads covers less than they do.
   if (covered(locate(*first, found).beads) < kNoLess * covered(stated.beads)) return;
   throw ConfigError(
       {.file = {}, .key = "camera.pixels_per_sigma"},
-      fmt::format("is {:g}, but the beads in the frames are {:.4g}{} px wide, and sigma is the bead "
-                  "diameter; correct "
-                  "the scale, or state the diameter of the beads (--diameter).",
-                  scale, smallest, largest > smallest ? fmt::format(" to {:.4g}", largest) : ""));
+      fmt::format("is {:g}, but the beads in the frames are {} px wide, and sigma is the bead diameter; "
+                  "correct the scale, or state the diameter of the beads (--diameter).",
+                  scale, sizes));
 }
 
 }  // namespace twincell::imaging

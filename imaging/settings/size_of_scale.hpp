@@ -2,19 +2,22 @@
 /// \file
 /// Whether the beads in the frames are one sigma wide.
 
+#include <string>
+
 #include "imaging/locate/locator.hpp"
 #include "imaging/stack/frames_ahead.hpp"
 
 namespace twincell::imaging {
 
-/// Checks a diameter that is the scale of the cell, px per sigma. The first frame is located with it; if the
-/// beads there have another size (5 %), or more than a sixth of the candidates are dropped, the diameter is
-/// searched without it. \param given options before the settings were found \param settled complete options
-/// \param threads which do not
-///     change the result
-/// \throws ConfigError naming camera.pixels_per_sigma and the size that is seen, if the scale differs from it
-/// by more than
-///     10 % and discs of that size cover no less of the frame
+/// "12" or "12 to 14", the diameters of the beads in px, if they differ from the scale by more than 10 %: one
+/// sigma is less than 0.9 of the smallest or more than 1.1 of the largest. Otherwise empty.
+std::string sizes_unlike(const LocatorOptions& beads, double pixels_per_sigma);
+
+/// Checks a diameter that is the scale of the cell, px per sigma. The first frame is located with it. If the
+/// beads there have another size (5 %), or a fifth as many candidates are dropped, the diameter is searched
+/// without it. \param given options before the settings were found \param settled complete options \param
+/// threads which do not change the result \throws ConfigError naming camera.pixels_per_sigma and the size
+/// that is seen, if sizes_unlike, and discs of that size cover no less of the frame
 void require_size_of_scale(FramesAhead& frames, const LocatorOptions& given, const LocatorOptions& settled,
                            int threads);
 

@@ -148,15 +148,10 @@ double smallest_diameter(const LocatorOptions& locator) {
 }  // namespace
 
 std::string TrackedStack::scale_doubt(const CellDescription& cell) const {
-  constexpr double kOff = 0.1;
-  if (!cell.pixels_per_sigma) return {};
-  double largest = locator.diameter_px;
-  for (const double other : locator.other_diameters_px) largest = std::max(largest, other);
-  const double smallest = smallest_diameter(locator), scale = *cell.pixels_per_sigma;
-  if (scale >= (1 - kOff) * smallest && scale <= (1 + kOff) * largest) return {};
-  return fmt::format(
-      "sigma is {:g} px (camera.pixels_per_sigma), but the beads are {:.4g}{} px wide: {:.3g} sigma", scale,
-      smallest, largest > smallest ? fmt::format(" to {:.4g}", largest) : "", smallest / scale);
+  const std::string sizes = cell.pixels_per_sigma ? sizes_unlike(locator, *cell.pixels_per_sigma) : "";
+  if (sizes.empty()) return {};
+  return fmt::format("sigma is {:g} px (camera.pixels_per_sigma), but the beads are {} px wide: {:.3g} sigma",
+                     *cell.pixels_per_sigma, sizes, smallest_diameter(locator) / *cell.pixels_per_sigma);
 }
 
 TrackedStack track_stack(FrameSource& stack, const LocatorOptions& given, LinkOptions link,
