@@ -7,11 +7,13 @@
 #include <map>
 #include <memory>
 
+#include "cli/import_doubts.hpp"
 #include "cli/output.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
 #include "core/counted.hpp"
 #include "core/error.hpp"
+#include "core/median.hpp"
 #include "imaging/cell/implausible.hpp"
 #include "trajectory/foreign/foreign_trajectory.hpp"
 #include "trajectory/formats/h5md_file.hpp"
@@ -34,6 +36,13 @@ void note_doubts(const Common& common, const ForeignTrajectory& source, double s
     note(common, fmt::format("the nearest neighbours in the first frame are {:.3g} bead diameters apart; the "
                              "bead diameter is {:g} in the unit of the file (--sigma).",
                              d, sigma));
+  constexpr double kOverlap = 0.7;
+  if (const std::vector<double>& radii = source.info().radius; !radii.empty())
+    if (const double wide = 2 * upper_median(radii); source.spacing() < kOverlap * wide)
+      note(common,
+           fmt::format("the nearest neighbours in the first frame are {:.3g} bead diameters apart and "
+                       "overlap, because their radii make them {:.3g} wide: the radii may be diameters.",
+                       source.spacing(), wide));
   if (source.n_beyond() > 0)
     note(common, fmt::format("{} of the first frame lie beyond the side walls of the cell, which is {:.4g} "
                              "bead diameters wide (--cell-origin, --cell-width).",
@@ -44,37 +53,6 @@ void note_doubts(const Common& common, const ForeignTrajectory& source, double s
                      missing, missing > 1 ? "frames" : "frame", source.n_frames()));
   if (source.replaces_times()) note(common, "the times of the file are replaced by those of --timestep.");
 }
-
-/// Hands frames on to a writer, and counts beads whose centres are beneath the plate: the sign of a wrong
-/// direction of y, drive, phase, origin or unit.
-class BeneathPlate : public TrajectorySink {
- public:
-  BeneathPlate(TrajectorySink& writer, const TrajectoryInfo& info)
-      : writer_(writer), counts_(info.drive && info.drive->axis == Axis::z) {}
-  void append(const Frame& frame) override {
-    for (std::size_t i = 0; counts_ && i < frame.position.size(); ++i) {
-      if (!frame.present(i)) continue;
-      ++all_;
-      below_ += frame.position[i].z() < frame.plate_height ? 1 : 0;
-    }
-    writer_.append(frame);
-  }
-  void note_many(const Common& common) const {
-    constexpr double kShare = 0.002;
-    const auto below = static_cast<double>(below_), all = static_cast<double>(all_);
-    if (below <= kShare * all) return;
-    note(common,
-         fmt::format(
-             "{:.3g} % of the beads lie beneath the plate: the direction of y (--y-up), the origin, or "
-             "amplitude, frequency or phase of the drive is wrong.",
-             100 * below / all));
-  }
-
- private:
-  TrajectorySink& writer_;
-  bool counts_;
-  std::size_t below_ = 0, all_ = 0;
-};
 
 void run(ImportOptions& o, const Common& common) {
   if (is_trajectory(o.file))
@@ -103,15 +81,15 @@ void run(ImportOptions& o, const Common& common) {
   info.provenance_json = provenance.to_json();
   H5mdWriter writer(o.output, info);
   ProgressBar writing(common, "writing");
-  BeneathPlate beneath(writer, info);
-  source.copy_to(beneath, writing);
+  WatchedImport watched(writer, info);
+  source.copy_to(watched, writing);
   writer.finish();
   if (info.box.dimension == 3 && source.is_flat())
     note(common, "all beads are in one plane in every frame; for a two-dimensional system: --dimension 2.");
   note_doubts(common, source, o.foreign.sigma);
   for (const std::string& doubt : imaging::implausible_numbers(imaging::shaken_cell(info.scale, info.drive)))
     note(common, doubt);
-  beneath.note_many(common);
+  for (const std::string& doubt : watched.doubts()) note(common, doubt);
   if (!info.drive) note(common, "no drive was given: the phases and the height of the plate are absent.");
   print_result(
       common,

@@ -11,7 +11,6 @@
 #include "cli/verb.hpp"
 #include "core/json_text.hpp"
 #include "trajectory/formats/h5md_file.hpp"
-#include "trajectory/gravity_of_run.hpp"
 #include "trajectory/time_unit.hpp"
 
 namespace twincell::cli {
@@ -56,8 +55,8 @@ nlohmann::json describe(const H5mdReader& file) {
   if (t.drive)
     d["drive"] = {{"amplitude", t.drive->amplitude},
                   {"omega", t.drive->omega},
-                  {"gamma", t.drive->gamma(gravity_of(t))},
-                  {"k_m", t.drive->k_m(gravity_of(t))},
+                  {"gamma", t.drive->gamma()},
+                  {"k_m", t.drive->k_m()},
                   {"displacement", t.drive->formula()}};
   if (t.drive && t.drive->ramp) {
     const Drive end =

@@ -28,10 +28,11 @@ void add_locating_options(CLI::App& verb, imaging::LocatingRequest& request) {
   verb.add_option("--min-explained", request.locator.judge.min_score,
                   "Smallest score of a bead, 0 to 1: share of the variance around its edge that the disc "
                   "explains; default: 0.5");
-  verb.add_option(
-          "--refine", request.locator.refine.method,
-          "Method that finds the position of each bead to a fraction of a pixel. " + imaging::refiners_help())
-      ->check(CLI::IsMember(imaging::refiner_names()));
+  verb.add_option("--refine", request.locator.refine.method,
+                  "Method that finds the position of each bead to a fraction of a pixel. " +
+                      imaging::refiners_help() + "; default: as CELL.toml states if it does, otherwise exact")
+      ->check(CLI::IsMember(imaging::refiner_names()))
+      ->each([&request](const std::string&) { request.refine_given = true; });
   CLI::Option* bright =
       verb.add_flag("--bright", request.locator.preprocess.bright, "Beads are brighter than the background");
   verb.add_flag(

@@ -98,7 +98,7 @@ twin::TwinOptions configure_twin(const MatchOptions& o, twin::TwinOptions option
   options.phases = imaging::phase_source(o.phase, cell, options.cell_file.string());
   options.frames = imaging::frames_of(o.locating);
   options.phase_lock = imaging::lock_of_chosen(cell.phase_lock, options.frames);
-  options.locator = imaging::locator_of(o.locating, cell.pixels_per_sigma, cell.bright);
+  options.locator = imaging::locator_of(o.locating, cell.pixels_per_sigma, cell.bright, cell.refine);
   options.region = imaging::region_of(o.locating);
   options.open_stack = [&o, &common, stack = options.stack.string(), locator = options.locator] {
     return open_for_locating(stack, o.locating, locator, common);

@@ -50,7 +50,7 @@ Run run_once(const MeasureOptions& options, const std::vector<std::string>& assi
   ProgressBar placing(common, "placing beads");
   sim::RunState state = sim::placed(scene, placing);
   json provenance = json::parse(scene_provenance(common, scene, state.beads, {options.scene}));
-  const double w = scene.g() > 0 ? scene.drive.k_m(scene.g()) : std::nan("");
+  const double w = scene.g() > 0 ? scene.drive.k_m() : std::nan("");
   if (!options.both_starts && scene.g() > 0 && w > kLowestBistable && w < kHighestBistable)
     note(common,
          fmt::format("at W = {:.4g}, just above 1, a bed can stay in the state in which it started for "

@@ -113,8 +113,8 @@ nlohmann::json describe(const sim::Simulation& run, const std::string& output, s
                n = static_cast<double>(run.system().beads.size());
   nlohmann::json d = {{"output", output},
                       {"beads", run.system().beads.size()},
-                      {"gamma", s.g() > 0 ? nlohmann::json(s.drive.gamma(s.g())) : nlohmann::json()},
-                      {"k_m", s.g() > 0 ? nlohmann::json(s.drive.k_m(s.g())) : nlohmann::json()},
+                      {"gamma", s.g() > 0 ? nlohmann::json(s.drive.gamma()) : nlohmann::json()},
+                      {"k_m", s.g() > 0 ? nlohmann::json(s.drive.k_m()) : nlohmann::json()},
                       {"amplitude", s.drive.amplitude},
                       {"omega", s.drive.omega},
                       {"displacement", s.drive.formula()},
@@ -254,7 +254,7 @@ void note_doubts(const sim::Scene& scene, const Common& common) {
          fmt::format("cell.gravity = {:g} is in units of scale.gravity_m_s2: gravity is {:.4g} m/s^2.",
                      scene.g(), scene.g() * *scene.scale.gravity_m_s2));
   for (const std::string& doubt :
-       imaging::implausible_numbers(imaging::shaken_cell(scene.scale, scene.drive, scene.g())))
+       imaging::implausible_numbers(imaging::shaken_cell(scene.scale, scene.drive)))
     note(common, doubt);
 }
 

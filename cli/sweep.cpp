@@ -5,11 +5,13 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
 #include "cli/device_option.hpp"
 #include "cli/mpi_farm.hpp"
@@ -18,6 +20,7 @@
 #include "cli/sweep_watch.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/escape.hpp"
 #include "core/output_rules.hpp"
@@ -56,6 +59,7 @@ sweep::Plan plan_of(const SweepOptions& options, const Common& common) {
   sweep::Plan plan = sweep::read_plan(options.plan);
   protect_named_inputs(common, {plan.scene_name});
   if (common.seed) plan.seed = *common.seed;
+  for (const std::string& doubt : plan.doubts) note(common, doubt);
   return plan;
 }
 
@@ -102,6 +106,20 @@ void note_repeats(const sweep::Schedule& schedule, const Common& common) {
   if (const std::string text = schedule.repeats_text(); !text.empty()) note(common, text);
 }
 
+/// Notes how many results in the folder belong to an earlier state of the scene or the plan.
+void note_foreign(const sweep::Schedule& schedule, const sweep::Store& store, const Common& common) {
+  std::set<std::string> known;
+  for (const sweep::Curve& curve : schedule.curves())
+    for (const sweep::Point& point : curve.points) known.insert(point.id);
+  const std::vector<std::string> stored = store.finished();
+  const auto foreign =
+      std::count_if(stored.begin(), stored.end(), [&](const std::string& id) { return !known.contains(id); });
+  if (foreign > 0)
+    note(common, fmt::format("{}: {} of another scene, seed or plan {} there and {} not used.",
+                             store.folder().string(), counted(static_cast<std::size_t>(foreign), "result"),
+                             foreign == 1 ? "is" : "are", foreign == 1 ? "is" : "are"));
+}
+
 void run_plan(const SweepOptions& options, const Common& common) {
   const sweep::Plan plan = plan_of(options, common);
   const sweep::Store store(folder_of(options));
@@ -112,6 +130,7 @@ void run_plan(const SweepOptions& options, const Common& common) {
       if (const auto claim = store.claim(point)) store.announce(plan, point);
   const Counts counts = schedule.counts();
   note_repeats(schedule, common);
+  note_foreign(schedule, store, common);
   nlohmann::json document = as_json(counts, store.folder(), schedule.all());
   document["repeats_left_out"] = schedule.repeats();
   print_result(
@@ -193,6 +212,7 @@ void run_status(const SweepOptions& options, const Common& common) {
   const sweep::Schedule schedule(plan, store);
   const Counts counts = schedule.counts();
   const std::size_t now = running(schedule, store);
+  note_foreign(schedule, store, common);
   // The remaining time is estimated from the time of the finished points, each of which ran on one core.
   double seconds = 0, work = 0;
   for (const sweep::Curve& curve : schedule.curves())
@@ -223,6 +243,7 @@ void run_collect(const SweepOptions& options, const Common& common) {
   const fs::path output = options.output.empty() ? store.folder() / "results.json" : fs::path(options.output);
   const sweep::Schedule schedule(plan, store);
   note_repeats(schedule, common);
+  note_foreign(schedule, store, common);
   const std::string json = collected_json(schedule);
   const std::string csv = collected_csv(schedule), pooled = pooled_csv(schedule);
   const fs::path table = fs::path(output).replace_extension(".csv"),

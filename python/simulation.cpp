@@ -199,7 +199,7 @@ void bind_scene(py::module_& module) {
           header_text("sim/accuracy/plan_json.hpp", "cost_json"))
       .def("__repr__", [](const sim::Scene& s) {
         return fmt::format("<twincell.Scene {}: Gamma = {:.6g}, {} cycles after {}>", s.file,
-                           s.g() > 0 ? s.drive.gamma(s.g()) : 0, s.cycles, s.discard);
+                           s.g() > 0 ? s.drive.gamma() : 0, s.cycles, s.discard);
       });
   module.def("preset_names", &sim::preset_names, "Names of the presets, for Scene.preset.");
 }

@@ -328,6 +328,13 @@ std::string grid_table(const Schedule& schedule) {
   return text;
 }
 
+/// What a search lacks: runs that are still to come, or an interval as narrow as the plan asks.
+std::string shortfall(const Curve& curve, const Search& search) {
+  if (!curve.complete) return " (unfinished)";
+  if (settled(*curve.onset, search.low, search.high, search.width)) return {};
+  return fmt::format("; not within search.width = {:g} after search.runs = {}", search.width, search.runs);
+}
+
 }  // namespace
 
 std::string collected_text(const Schedule& schedule) {
@@ -339,9 +346,10 @@ std::string collected_text(const Schedule& schedule) {
     if (!curve.onset) continue;
     std::string place;
     for (std::size_t a = 0; a < plan.axes.size(); ++a)
-      place += fmt::format("{} = {}, ", plan.axes[a].key, shown(curve.values[a]));
+      if (plan.axes[a].values.size() > 1)
+        place += fmt::format("{} = {}, ", plan.axes[a].key, shown(curve.values[a]));
     text += fmt::format("{}{} from {} {}{}\n", place, plan.verdict->name, plan.search->key,
-                        curve.onset->text(), curve.complete ? "" : " (unfinished)");
+                        curve.onset->text(), shortfall(curve, *plan.search));
   }
   return text + grid_table(schedule);
 }

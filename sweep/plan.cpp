@@ -116,17 +116,25 @@ void read_scene_of(Plan& plan, const ConfigSection& root, const fs::path& folder
   plan.scene_folder = path.parent_path();
 }
 
-void check_axis(const Plan& plan, const Where& where, const TomlLeaf& leaf) {
+void check_axis(Plan& plan, const Where& where, const TomlLeaf& leaf) {
   if (leaf.items.empty()) throw ConfigError(where, "has no values.");
   if (plan.search && leaf.path == plan.search->key)
     throw ConfigError(where, "is the key that [search] varies.");
   std::set<std::string> different;  // 1 and 1.0 are one value
+  std::vector<double> numbers;
   for (const std::string& item : leaf.items) {
     double value = 0;
     const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), value);
     const bool number = error == std::errc() && end == item.data() + item.size();
     different.insert(number ? fmt::format("{}", value + 0.0) : item);
+    if (number) numbers.push_back(value);
   }
+  // [1,5, 2,0] is meant as 1.5 and 2.0 where a comma separates decimals.
+  if (numbers.size() == leaf.items.size() && !std::is_sorted(numbers.begin(), numbers.end()))
+    plan.doubts.push_back(fmt::format(
+        "{}: {}: the {} values {} do not ascend; a comma separates values, and a decimal fraction is written "
+        "with a point.",
+        plan.file, where.key, numbers.size(), fmt::join(numbers, "; ")));
   if (different.size() < leaf.items.size())
     throw ConfigError(where, "names a value twice; it would be the same run, counted twice.");
   if (leaf.path == "start.seed" && (plan.search || plan.seeds > 1))

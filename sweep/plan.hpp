@@ -48,6 +48,7 @@ struct Plan {
   std::optional<Search> search;
   bool stop_early = false;           ///< end a run when its verdict is decided (stop_rule.hpp)
   std::vector<std::string> results;  ///< names of the wanted results; empty: all
+  std::vector<std::string> doubts;   ///< sentences on values that are possible but hardly meant
 };
 
 /// Reads a plan. \throws InputError, ConfigError naming file, line, key, value and bound

@@ -19,7 +19,7 @@ constexpr double kFewestCycles = 100, kFewestFlights = 40;
 
 std::int64_t first_look(const sim::Scene& scene) {
   // A flight of 2 V_p/g takes Gamma/pi periods.
-  const double periods = scene.g() > 0 && !scene.lid ? scene.drive.gamma(scene.g()) / std::numbers::pi : 0;
+  const double periods = scene.g() > 0 && !scene.lid ? scene.drive.gamma() / std::numbers::pi : 0;
   return static_cast<std::int64_t>(std::ceil(std::max(kFewestCycles, kFewestFlights * periods)));
 }
 

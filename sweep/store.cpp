@@ -150,6 +150,15 @@ bool Store::claimed(const Point& point) const {
   return taken;
 }
 
+std::vector<std::string> Store::finished() const {
+  std::vector<std::string> ids;
+  std::error_code ec;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "points", ec))
+    if (std::filesystem::exists(entry.path() / "result.json", ec))
+      ids.push_back(entry.path().filename().string());
+  return ids;
+}
+
 void Store::keep(const Point& point, const std::string& result) const {
   auto document = nlohmann::json::parse(result);
   document[kSum] = sum_of(document);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/error.hpp"
 #include "sweep/plan.hpp"
@@ -54,6 +55,8 @@ class Store {
   [[nodiscard]] std::optional<Claim> claim(const Point& point) const;
   /// Whether a process computes the point now.
   [[nodiscard]] bool claimed(const Point& point) const;
+  /// The identifiers of all points with a result, of this plan or another.
+  [[nodiscard]] std::vector<std::string> finished() const;
   /// Writes result.json. \throws NotStored
   void keep(const Point& point, const std::string& result) const;
 

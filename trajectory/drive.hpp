@@ -65,13 +65,12 @@ struct Drive {
   std::shared_ptr<const RecordedMotion> recorded = {};  ///< null: the formula above
   std::optional<DriveRamp> ramp = {};                   ///< \pre its `from` is {amplitude, omega}
   std::optional<HorizontalMotion> horizontal = {};      ///< \pre axis is z
+  double gravity = 1;  ///< g of the run in units of the g of its scale, > 0; 1 in a run without gravity
 
-  /// Gamma = A omega^2 / g of the first harmonic or of the component at omega, with g in reduced units (1).
-  [[nodiscard]] double gamma(double gravity = 1) const { return amplitude * omega * omega / gravity; }
+  /// Gamma = A omega^2 / g of the first harmonic or of the component at omega.
+  [[nodiscard]] double gamma() const { return amplitude * omega * omega / gravity; }
   /// K_m = A^2 omega^2/(sigma g); the same number as W of Bhateja et al. 2016 and S of Eshuis et al. 2007.
-  [[nodiscard]] double k_m(double gravity = 1) const {
-    return amplitude * amplitude * omega * omega / gravity;
-  }
+  [[nodiscard]] double k_m() const { return amplitude * amplitude * omega * omega / gravity; }
   /// V_p = A omega, sigma/t0.
   [[nodiscard]] double peak_velocity() const { return amplitude * omega; }
   /// T = 2 pi / omega, t0.
@@ -105,7 +104,9 @@ struct Drive {
            (horizontal && horizontal->amplitude > 0);
   }
   /// A plate at rest at its mean position, with the same axis and period.
-  [[nodiscard]] Drive at_rest() const { return {.axis = axis, .amplitude = 0, .omega = omega}; }
+  [[nodiscard]] Drive at_rest() const {
+    return {.axis = axis, .amplitude = 0, .omega = omega, .gravity = gravity};
+  }
   /// Upper bound of the length of the displacement in space, sigma: A (1 + sum a_n) of a vertical motion, A
   /// of a sine.
   [[nodiscard]] double displacement_bound() const;

@@ -215,6 +215,41 @@ void displace_spellings(Config& config, const std::string& assignment) {
     for (const auto& other : said) config.erase(other);
 }
 
+void displace_third_quantity(Config& config, const std::vector<std::string>& assignments) {
+  using Keys = std::vector<std::string>;
+  const std::array<Keys, 3> quantities = {
+      {{"frequency", "omega"}, {"amplitude"}, {"gamma", "k_m", "peak_velocity"}}};
+  const auto spelled = [](const Keys& plain) {
+    Keys keys = plain;
+    for (const Spelling& s : spellings())
+      if (s.section == std::string("drive") && std::find(plain.begin(), plain.end(), s.plain) != plain.end())
+        keys.emplace_back(s.written);
+    return keys;
+  };
+  const bool of_drive = std::any_of(assignments.begin(), assignments.end(),
+                                    [](const std::string& a) { return a.starts_with("drive."); });
+  const auto drive = of_drive ? table_at(config, "drive") : std::nullopt;
+  if (!drive) return;
+  std::vector<Keys> others;  // stated in the configuration and not assigned
+  std::size_t assigned = 0;
+  for (const Keys& plain : quantities) {
+    const Keys keys = spelled(plain);
+    const bool is_assigned = std::any_of(assignments.begin(), assignments.end(), [&](const std::string& a) {
+      return std::any_of(keys.begin(), keys.end(),
+                         [&](const std::string& key) { return a.starts_with("drive." + key + "="); });
+    });
+    if (is_assigned)
+      ++assigned;
+    else if (std::any_of(keys.begin(), keys.end(), [&](const std::string& key) { return drive->has(key); }))
+      others.push_back(keys);
+  }
+  if (assigned == 0 || others.empty() || assigned + others.size() < 3) return;
+  const bool has_frequency = others.front().front() == "frequency";
+  if (assigned == 1 && !has_frequency) return;
+  for (std::size_t i = assigned == 1 ? 1 : 0; i < others.size(); ++i)
+    for (const std::string& key : others[i]) config.erase("drive." + key);
+}
+
 std::string resolved_text(Config& config) {
   const auto scale = table_at(config, "scale");
   if (!scale || !scale->has("sigma_m")) return config.text();

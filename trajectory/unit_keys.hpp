@@ -17,6 +17,7 @@
 ///     beads.intruder.x, y, z        x_mm, ...                        x_sigma, ...
 
 #include <string>
+#include <vector>
 
 #include "core/config.hpp"
 #include "trajectory/units.hpp"
@@ -45,6 +46,13 @@ void reduce_units(Config& config);
 /// Prepares the assignment "section.key=value": removes from `config` every spelling of the quantity that it
 /// sets. omega and frequency count as one quantity here, and so do gamma, k_m and peak_velocity.
 void displace_spellings(Config& config, const std::string& assignment);
+
+/// Two of amplitude, frequency and strength (gamma, k_m or peak velocity) determine a drive. Where
+/// assignments to `drive` would make three, removes from `config` those that they do not set, in every
+/// spelling; of one assignment and two stated quantities the frequency stays. An assigned frequency does not
+/// tell which of the two others stays, and removes none. \pre displace_spellings was called for each
+/// assignment
+void displace_third_quantity(Config& config, const std::vector<std::string>& assignments);
 
 /// The configuration as TOML that has the same meaning when it is read again. If [scale] sets sigma, the
 /// quantities of the table above are written under their explicit reduced keys.

@@ -9,6 +9,7 @@
 #include "core/escape.hpp"
 #include "core/placeholder.hpp"
 #include "imaging/cell/implausible.hpp"
+#include "imaging/refine/refiner.hpp"
 
 namespace twincell::twin {
 namespace {
@@ -64,6 +65,23 @@ class Draft {
     }
   }
 
+  /// Touching beads are one diameter apart. Discs of another width have rims that glare, overexposure or a
+  /// grey level of their own moves.
+  void scale_of_plain_discs(const calibration::Estimate& width) {
+    constexpr double kErrors = 5, kShare = 1e-3, kClear = 2e-3;
+    if (s_.diameter_stated || !s_.beads->spacing) return;
+    const calibration::Estimate& apart = *s_.beads->spacing;
+    const double least = std::max(kErrors * std::hypot(width.error, apart.error), kShare * apart.value);
+    if (relative(apart) > kClear || std::abs(width.value - apart.value) <= least) return;
+    scale_ = apart;
+    how_scale_ = fmt::format("distance of touching beads in {} frames; the discs are {} px wide",
+                             s_.beads->frames, value_text(width));
+    out_.notes.push_back(fmt::format(
+        "the discs are {} +- {} px wide, and touching ones {} +- {} px apart: glare, exposure or their grey "
+        "level moves the rims; the distance is taken for the bead diameter",
+        value_text(width), error_text(width.error), value_text(apart), error_text(apart.error)));
+  }
+
   /// Scale and the diameter of a bead in mm.
   void scale() {
     sigma_mm_ = a_.sigma_mm ? std::optional(calibration::Estimate{*a_.sigma_mm, 0}) : std::nullopt;
@@ -86,7 +104,9 @@ class Draft {
     } else if (diameter) {
       scale_ = diameter;
       how_scale_ = fmt::format("mean diameter of {} discs in {} frames", s_.beads->sizes, s_.beads->frames);
-      if (!s_.plain_discs && s_.other_diameters_px.empty()) scale_of_shaded_discs(*diameter);
+      const bool plain = imaging::refiner_named(s_.refine).model == imaging::DiscModel::plain;
+      if (s_.other_diameters_px.empty())
+        plain ? scale_of_plain_discs(*diameter) : scale_of_shaded_discs(*diameter);
       diameter = scale_;
       if (width && a_.width_mm) {
         sigma_mm_ = with_errors(*a_.width_mm * diameter->value / width->value,
@@ -114,6 +134,8 @@ class Draft {
         measured("camera.distortion", {g->distortion, *g->distortion_error}, "bend of walls and plate");
     }
     if (s_.bright) stated("camera.bright", "true", "the beads are brighter than the background");
+    if (s_.refine != imaging::RefineOptions{}.method)
+      stated("camera.refine", fmt::format("\"{}\"", s_.refine), "the method that suits these discs");
     if (a_.frame_rate_hz)
       stated("camera.frame_rate_hz", fmt::format("{:.10g}", *a_.frame_rate_hz), "as stated");
     else if (s_.playback_hz && !s_.frame_rate_hz && a_.frequency_hz && s_.drive)

@@ -85,7 +85,7 @@ std::optional<imaging::LocatorOptions> survey_beads(CellSurvey& s, const SurveyO
   s.bright = found.preprocess.bright;
   s.diameter_px = found.diameter_px;
   s.diameter_stated = options.diameter_px > 0;
-  s.plain_discs = imaging::model_of(found.refine) == imaging::DiscModel::plain;
+  s.refine = found.refine.method;
   s.other_diameters_px = found.other_diameters_px;
   try {
     ReadableFrames frames(s.stack);

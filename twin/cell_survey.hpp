@@ -13,6 +13,7 @@
 #include "calibration/camera/size_statistics.hpp"
 #include "calibration/drive/drive_fit.hpp"
 #include "imaging/disc/detection.hpp"
+#include "imaging/refine/refiner.hpp"
 #include "imaging/stack/frame_source.hpp"
 #include "twin/comparison.hpp"
 
@@ -42,8 +43,8 @@ struct CellSurvey {
   bool bright = false;           ///< beads are brighter than the background
   double diameter_px = 0;        ///< bead diameter of the locator; 0: no beads were found
   bool diameter_stated = false;  ///< by SurveyOptions
-  bool plain_discs = true;       ///< of uniform darkness; else where a disc ends depends on the light
-  std::vector<double> other_diameters_px;  ///< of discs of further sizes
+  std::string refine = imaging::RefineOptions{}.method;  ///< the refiner that suits the discs
+  std::vector<double> other_diameters_px;                ///< of discs of further sizes
   std::optional<calibration::SizeStatistics> beads;
   std::optional<calibration::CellGeometry> geometry;
   std::optional<calibration::DriveFit> drive;       ///< motion of the plate; times in frames

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -308,6 +309,25 @@ std::vector<analysis::Checks::Filmed> film_matches(const Sides& sides, const Com
   return filmed;
 }
 
+/// Notes pairs of runs that agree in Gamma and not in K_m: their frequencies differ.
+void note_other_frequencies(const std::vector<analysis::Run>& runs,
+                            const std::vector<analysis::Match>& matches, std::vector<std::string>& notes) {
+  constexpr double kSame = 0.1;
+  for (const analysis::Match& match : matches) {
+    if (match.experiments.empty() || match.simulations.empty()) continue;
+    const double of_experiment = runs[match.experiments.front()].k_m;
+    const auto other = std::find_if(match.simulations.begin(), match.simulations.end(), [&](std::size_t s) {
+      return std::abs(runs[s].k_m - of_experiment) > kSame * std::max(runs[s].k_m, of_experiment);
+    });
+    if (other != match.simulations.end())
+      notes.push_back(
+          fmt::format("Gamma = {:.4g}: K_m is {:.4g} in {} and {:.4g} in {}: these runs are "
+                      "compared, but their frequencies differ.",
+                      match.gamma, of_experiment, runs[match.experiments.front()].name, runs[*other].k_m,
+                      runs[*other].name));
+  }
+}
+
 /// Drops pictures until those of all runs fit into the page, each run with the same share.
 void limit_pictures(std::vector<analysis::Run>& runs) {
   std::size_t with_pictures = 0;
@@ -326,6 +346,7 @@ analysis::Comparison compare_runs(const ComparingOptions& options, const Progres
   c.runs = analyse(sides, options, progress, notes, c.checks);
   refuse_repeated_runs(c.runs);
   c.matches = analysis::match_runs(c.runs, options.tolerance);
+  note_other_frequencies(c.runs, c.matches, notes);
   if (options.film) c.checks.filmed = film_matches(sides, options, c.matches, progress, notes, c.runs);
   limit_pictures(c.runs);
   c.boundaries = analysis::find_boundaries(c.runs);

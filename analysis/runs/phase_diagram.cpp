@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "analysis/motion/tracers.hpp"
-#include "trajectory/gravity_of_run.hpp"
 
 namespace twincell::analysis {
 namespace {
@@ -51,7 +50,7 @@ Run analyze_run(const TrajectorySource& trajectory, Side side, const AnalysisOpt
   run.phase = phase_named(find_result(run.results, "phase").text);
   run.cutoff = neighbour_cutoff(info, options);
   run.gamma = info.conditions.gamma.value_or(info.drive->gamma());
-  run.k_m = info.drive->k_m(gravity_of(info));
+  run.k_m = info.drive->k_m();
   run.omega = info.drive->omega;
   run.box = info.box;
   run.radius = info.radius;

@@ -17,7 +17,6 @@
 #include "analysis/statistics/statistics.hpp"
 #include "core/constants.hpp"
 #include "core/error.hpp"
-#include "trajectory/gravity_of_run.hpp"
 
 namespace twincell::analysis {
 namespace {
@@ -311,8 +310,8 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
     numbers("the number of phases per cycle", p.phases_per_cycle, q.phases_per_cycle, 0);
     words("drive:", p.drive ? "known" : "not known", q.drive ? "known" : "not known");
     if (p.drive) {
-      numbers("Gamma", p.drive->gamma(gravity_of(p)), q.drive->gamma(gravity_of(q)), kSameDrive);
-      numbers("the gravity", gravity_of(p), gravity_of(q), kSameDrive);
+      numbers("Gamma", p.drive->gamma(), q.drive->gamma(), kSameDrive);
+      numbers("the gravity", p.drive->gravity, q.drive->gravity, kSameDrive);
       numbers("omega", p.drive->omega, q.drive->omega, kSameDrive);
       words("the drive is", p.drive->formula(), q.drive->formula());
     }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 
@@ -365,6 +366,23 @@ Timed first_attempt(const std::vector<double>& heights, int frames_per_cycle) {
   return out;
 }
 
+/// Whether frames are lost or doubled in nearly every cycle, at the same phase or more than one of them: a
+/// cycle of another length then passes for the real one, as where the plate is not seen at its lowest.
+bool slips_in_each_cycle(const imaging::SineSlips& slips, int frames_per_cycle) {
+  constexpr double kEach = 0.7, kSeveral = 1.5, kTogether = 0.95;
+  const double cycles = static_cast<double>(slips.ticks.back() - slips.ticks.front()) / frames_per_cycle;
+  const double each = static_cast<double>(slips.dropped + slips.doubled) / cycles;
+  if (each < kEach || each >= kSeveral) return each >= kSeveral;
+  std::complex<double> sum = 0;
+  double events = 0;
+  for (std::size_t i = 1; i < slips.ticks.size(); ++i)
+    if (slips.ticks[i] - slips.ticks[i - 1] != 1) {
+      sum += std::polar(1.0, 2 * kPi * static_cast<double>(slips.ticks[i]) / frames_per_cycle);
+      ++events;
+    }
+  return std::abs(sum) > kTogether * events;
+}
+
 /// Repairs dropped and doubled frames: for each number of frames per cycle, finds the best path of phases and
 /// fits again. The repair is kept where it follows the frames better.
 void repair_frames(const std::vector<double>& heights, int frames_per_cycle, Timed& now, DriveFit& lock) {
@@ -372,6 +390,7 @@ void repair_frames(const std::vector<double>& heights, int frames_per_cycle, Tim
   for (const int n : imaging::frames_per_cycle_to_try(frames_per_cycle, period)) {
     const std::optional<imaging::SineSlips> slips = imaging::fit_sine_with_slips(heights, n);
     if (!slips || slips->dropped + slips->doubled == 0) continue;
+    if (frames_per_cycle == 0 && slips_in_each_cycle(*slips, n)) continue;
     std::vector<double> mended(slips->ticks.begin(), slips->ticks.end());
     Attempt b = attempt(samples_of(heights, mended), 2 * kPi / n);
     const double scatter = b.scatter.at(0), before = now.attempt.scatter.at(0);

@@ -15,9 +15,9 @@ TrackedFilm track_film(
   (void)cell.drive();  // refuse a contradictory drive before the work starts
   const imaging::FrameRange range = imaging::frames_of(options.locating);
   cell.phase_lock = imaging::lock_of_chosen(cell.phase_lock, range);
-  const imaging::LocatorOptions locator =
-      imaging::locator_of(options.locating, cell.pixels_per_sigma,
-                          request.cell_file.empty() ? std::nullopt : std::optional<bool>(cell.bright));
+  const imaging::LocatorOptions locator = imaging::locator_of(
+      options.locating, cell.pixels_per_sigma,
+      request.cell_file.empty() ? std::nullopt : std::optional<bool>(cell.bright), cell.refine);
   const imaging::Region region = imaging::region_of(options.locating);
   // Locate and link all frames.
   const auto frames = open(locator);

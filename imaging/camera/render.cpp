@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
 
@@ -36,18 +37,30 @@ double height_of_beads(const TrajectorySource& trajectory, Progress& progress) {
 }
 
 // A trigger error larger than the interval between frames would store frames in the wrong order.
-void check_trigger(const TrajectorySource& trajectory, const CameraOptions& options) {
+void check_times(const TrajectorySource& trajectory, const CameraOptions& options) {
+  const std::optional<Drive>& drive = trajectory.info().drive;
+  double interval = std::numeric_limits<double>::infinity();
+  if (trajectory.n_frames() > 1) {
+    Frame first, second;
+    trajectory.read(0, first);
+    trajectory.read(1, second);
+    interval = second.time - first.time;
+  }
   const double most = std::abs(options.trigger_offset) + 4 * options.trigger_jitter;
-  if (most == 0 || trajectory.n_frames() < 2) return;
-  Frame first, second;
-  trajectory.read(0, first);
-  trajectory.read(1, second);
-  if (most > second.time - first.time)
+  if (most > interval)
     throw ConfigError(
         Where{.file = {}, .key = options.trigger_jitter > 0 ? "trigger-jitter" : "trigger-offset"},
         fmt::format(
             "moves pictures by up to {:.4g} t0 (four standard deviations); the frames are {:.4g} t0 apart.",
-            most, second.time - first.time));
+            most, interval));
+  // Between frames that are farther apart the paths are not known.
+  constexpr double kOfPeriod = 1.0 / 8;
+  const double longest = drive ? std::min(interval, kOfPeriod * drive->period()) : interval;
+  if (options.exposure > longest * (1 + 1e-6))
+    throw ConfigError(Where{.file = {}, .key = "exposure"},
+                      fmt::format("of {:.4g} t0 is longer than {:.4g} t0, {}.", options.exposure, longest,
+                                  longest < interval ? "an eighth of the period of the drive"
+                                                     : "the time from frame to frame"));
 }
 
 /// The files of a film state one drive, and its side walls do not move.
@@ -201,7 +214,7 @@ Rendered render(const TrajectorySource& trajectory, const CameraOptions& options
   const TrajectoryInfo& info = trajectory.info();
   options.check();
   CameraOptions fitted = options.reduced(info.scale);
-  check_trigger(trajectory, fitted);
+  check_times(trajectory, fitted);
   check_drive(trajectory);
   if (fitted.max_height == 0) fitted.max_height = height_of_beads(trajectory, progress);
   const Filming filming(trajectory, fitted);

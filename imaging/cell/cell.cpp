@@ -2,6 +2,7 @@
 
 #include "core/bounded_list.hpp"
 #include "core/config.hpp"
+#include "imaging/refine/refiner.hpp"
 #include "trajectory/unit_keys.hpp"
 
 namespace twincell::imaging {
@@ -27,6 +28,7 @@ CellDescription read_cell(const std::filesystem::path& path, const std::vector<s
   // Assignments are applied before units are converted, so that an assigned spelling replaces another
   // spelling of the same quantity in the file.
   for (const std::string& assignment : assignments) displace_spellings(config, assignment);
+  displace_third_quantity(config, assignments);
   for (const std::string& assignment : assignments) config.assign(assignment);
   CellDescription cell;
   reduce_units(config);
@@ -48,6 +50,7 @@ CellDescription read_cell(const std::filesystem::path& path, const std::vector<s
   cell.rotation_deg = camera.number_in("rotation_deg", -180, 180).value_or(0);
   cell.distortion = camera.number_in("distortion", -0.2, 0.2).value_or(0);
   cell.bright = camera.boolean("bright").value_or(false);
+  cell.refine = camera.word("refine", refiner_names());
   cell.frame_rate_hz = camera.number_in("frame_rate_hz", 0, 1e9, true);
 
   const ConfigSection box = root.section("cell");

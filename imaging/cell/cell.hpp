@@ -11,6 +11,7 @@
 ///     rotation_deg = 0.0           # rotation of the picture about its centre, counter-clockwise
 ///     distortion = 0.0             # k1: a point at r, in half diagonals, appears at r (1 + k1 r^2)
 ///     bright = false               # discs brighter than their surroundings
+///     refine = "profile"           # method that suits these discs
 ///     frame_rate_hz = 1000.0       # overrides the rate that the stack states
 ///     [cell]
 ///     width_mm = 40.0              # between the side walls; or width_sigma
@@ -54,6 +55,7 @@ struct CellDescription {
   double distortion = 0;                   ///< k1 (geometry/lens.hpp)
   PhaseLock phase_lock;
   bool bright = false;
+  std::optional<std::string> refine;               ///< one of refiner_names()
   std::optional<double> frame_rate_hz;             ///< > 0
   std::optional<double> width, height;             ///< sigma, > 0
   std::optional<std::array<double, 2>> side_tilt;  ///< degrees outward, left and right

@@ -237,6 +237,29 @@ std::optional<Surface> clipped_background(const cv::Mat& grey, const cv::Mat1f& 
   return light;
 }
 
+/// Bright frames without text, glare and hot pixels. Levels far above those of beads and walls would
+/// otherwise set the unit of darkness; they are cut a little above the brightest parts of these. \param image
+/// the frame, prepared
+cv::Mat without_highlights(const cv::Mat& grey, const Prepared& image) {
+  constexpr double kOfClass = 0.6, kNearlyAll = 0.9, kAbove = 1.15;
+  const double contrast = contrast_of(image.darkness);
+  if (contrast == 1) return grey;
+  std::vector<float> levels;
+  for (const float d : cv::Mat1f(image.darkness.clone()))
+    if (static_cast<double>(d) > kOfClass * contrast) levels.push_back(d);
+  if (levels.empty()) return grey;
+  const auto at =
+      levels.begin() + static_cast<std::ptrdiff_t>(kNearlyAll * static_cast<double>(levels.size()));
+  std::nth_element(levels.begin(), at, levels.end());
+  double top = 0;
+  cv::minMaxLoc(grey, nullptr, &top);
+  const cv::Size size = grey.size();
+  const double light = image.light.dot(surface_basis(0.5 * size.width, 0.5 * size.height, size));
+  cv::Mat cut;
+  cv::min(grey, top - (1 - kAbove * static_cast<double>(*at)) * light, cut);
+  return cut;
+}
+
 /// A fitted step. `at` is the distance from the centre of the border's first pixel, px; `error` is the
 /// standard deviation of `at` for pixel noise 1.
 struct Step {
@@ -282,9 +305,14 @@ std::optional<Step> fit_step(const Window& w, double start, double s, bool free_
 
 }  // namespace
 
-CellEdges find_cell_edges(const cv::Mat& grey, bool bright, double diameter_px) {
+CellEdges find_cell_edges(const cv::Mat& picture, bool bright, double diameter_px) {
   constexpr double kCorner = 4.5, kUsualBlur = 0.9, kLargestBlur = 5, kLargestError = 0.12;
-  const Prepared image = prepare(grey, {.bright = bright}, 0.5 * diameter_px);
+  cv::Mat grey = picture;
+  Prepared image = prepare(grey, {.bright = bright}, 0.5 * diameter_px);
+  if (bright) {
+    grey = without_highlights(picture, image);
+    if (grey.data != picture.data) image = prepare(grey, {.bright = bright}, 0.5 * diameter_px);
+  }
   const cv::Mat1f& d = image.darkness;
   const Noise variance = noise_of(d);
   const double noise = std::sqrt(variance.dark + variance.light);

@@ -39,6 +39,6 @@ struct CellEdges {
 /// 3 px, or a dark bar of at least 4 px crosses at least a third of the lines. Pure.
 /// \param bright beads, walls and plate are brighter than the background
 /// \param diameter_px bead diameter
-CellEdges find_cell_edges(const cv::Mat& grey, bool bright, double diameter_px);
+CellEdges find_cell_edges(const cv::Mat& picture, bool bright, double diameter_px);
 
 }  // namespace twincell::imaging

@@ -28,6 +28,8 @@ std::vector<KeyRow> rows() {
       {"camera.distortion", "1", "0", "0.01",
        "k1: a point at r, in half diagonals, appears at r (1 + k1 r²)"},
       {"camera.bright", "", "false", "true", "beads, walls and plate are brighter than the background"},
+      {"camera.refine", "", "\"exact\"", "\"profile\"",
+       "method that finds the position of each bead, as --refine of track"},
       {"camera.frame_rate_hz", "1/s", "that of the stack", "1000.0",
        "frame rate; overrides the rate that the stack states"},
       {"cell.width_mm", "mm", "required by match", "40.0", "distance of the side walls at the plate",

@@ -8,12 +8,12 @@
 
 namespace twincell::imaging {
 
-ShakenCell shaken_cell(const Scale& scale, const std::optional<Drive>& drive, double gravity) {
+ShakenCell shaken_cell(const Scale& scale, const std::optional<Drive>& drive) {
   ShakenCell numbers;
   if (scale.sigma_m) numbers.sigma_mm = *scale.sigma_m * 1e3;
-  if (scale.gravity_m_s2) numbers.gravity_m_s2 = *scale.gravity_m_s2 * gravity;
+  if (scale.gravity_m_s2) numbers.gravity_m_s2 = *scale.gravity_m_s2 * (drive ? drive->gravity : 1);
   if (!drive || !(drive->amplitude > 0)) return numbers;
-  numbers.gamma = drive->gamma(gravity);
+  numbers.gamma = drive->gamma();
   if (const auto t0 = scale.t0_s()) numbers.frequency_hz = drive->omega / (2 * std::numbers::pi * *t0);
   return numbers;
 }

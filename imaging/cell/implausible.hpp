@@ -21,8 +21,8 @@ struct ShakenCell {
 /// The numbers of a cell description, as far as it states them.
 ShakenCell shaken_cell(const CellDescription& cell);
 
-/// The numbers of a drive in reduced units. \param gravity of the run, in units of that of the scale
-ShakenCell shaken_cell(const Scale& scale, const std::optional<Drive>& drive, double gravity = 1);
+/// The numbers of a drive in reduced units.
+ShakenCell shaken_cell(const Scale& scale, const std::optional<Drive>& drive);
 
 /// One sentence for each number outside the range that shaken beads have: diameters of 0.02 to 100 mm,
 /// frequencies of 0.1 to 2000 Hz, Gamma of 0.01 to 300, gravity of 0.01 to 100 m/s^2. Empty if all are

@@ -8,7 +8,9 @@
 #include <functional>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "imaging/disc/ring_normal_equations.hpp"
@@ -214,36 +216,152 @@ cv::Mat1b regions_darker_than(float limit, const cv::Mat1f& darkness, double dis
   return regions;
 }
 
+/// Gaussian blur that does not reach into the spare columns beside the picture.
+void blurred(const cv::Mat1f& picture, double by, cv::Mat1f& out) {
+  cv::GaussianBlur(picture, out, {0, 0}, by, by, cv::BORDER_DEFAULT | cv::BORDER_ISOLATED);
+}
+
+/// Divides the picture by the level of its dark parts, a quadratic surface. Beyond the levels of these parts
+/// nothing is extrapolated. \return the range of the level, relative to its largest value
+/// \param radius_px of beads, whose gaps do not lower the level
+double divide_by_level(cv::Mat1f& picture, double radius_px) {
+  constexpr int kPasses = 4;
+  constexpr float kDark = 0.4F;
+  constexpr double kNear = 0.85, kFar = 1.1;  // beyond these shares of the level are no walls and no beads
+  constexpr double kRidge = 1e-3;             // of the number of samples
+  constexpr double kSamples = 5000;
+  const int stride =
+      std::max(1, static_cast<int>(std::sqrt(static_cast<double>(picture.total()) / kSamples)));
+  const int wide = 2 * cvCeil(radius_px / 2) + 1;
+  cv::Mat1f highest;
+  cv::dilate(picture, highest, cv::getStructuringElement(cv::MORPH_RECT, {wide, wide}));
+  std::vector<std::pair<Surface, double>> samples;
+  for (int y = stride / 2; y < picture.rows; y += stride)
+    for (int x = stride / 2; x < picture.cols; x += stride)
+      if (picture(y, x) > kDark)
+        samples.emplace_back(surface_basis(x, y, picture.size()), static_cast<double>(highest(y, x)));
+  constexpr std::size_t kFewest = 60;
+  if (samples.size() < kFewest) return 0;
+  Surface level = Surface::Zero();
+  for (int pass = 0; pass < kPasses; ++pass) {
+    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+    Surface right = Surface::Zero();
+    for (const auto& [basis, value] : samples) {
+      const double expected = level.dot(basis);
+      if (pass > 0 && (value < kNear * expected || value > kFar * expected)) continue;
+      normal += basis * basis.transpose();
+      right += value * basis;
+    }
+    normal.diagonal().tail<5>().array() += kRidge * static_cast<double>(samples.size());
+    level = normal.ldlt().solve(right);
+  }
+  std::vector<float> levels;
+  for (const auto& [basis, value] : samples) levels.push_back(static_cast<float>(level.dot(basis)));
+  const auto [least, most] = std::minmax_element(levels.begin(), levels.end());
+  const float low = *least, high = *most;
+  if (!(low > 0)) return 0;
+  for (int y = 0; y < picture.rows; ++y) {
+    const SurfaceRow row = surface_row(level, y, picture.size());
+    for (int x = 0; x < picture.cols; ++x) picture(y, x) /= std::clamp(row.at(x), low, high);
+  }
+  return static_cast<double>((high - low) / high);
+}
+
+/// Regions of a smooth picture that are nearly as dark as its darkest parts.
+/// \param among the parts \param share of the darkest level
+cv::Mat1b regions_near_darkest(const cv::Mat1f& smooth, const cv::Mat1b& among, float share,
+                               double disc_radius_px) {
+  constexpr double kNearlyAll = 0.9;
+  std::vector<float> levels;
+  for (int y = 0; y < smooth.rows; ++y)
+    for (int x = 0; x < smooth.cols; ++x)
+      if (among(y, x) != 0) levels.push_back(smooth(y, x));
+  if (levels.empty()) return {};
+  const auto at =
+      levels.begin() + static_cast<std::ptrdiff_t>(kNearlyAll * static_cast<double>(levels.size()));
+  std::nth_element(levels.begin(), at, levels.end());
+  return regions_darker_than(share * *at, smooth, disc_radius_px);
+}
+
+/// Removes the regions that do not touch the border of the picture.
+void keep_at_border(cv::Mat1b& regions) {
+  cv::Mat1i part;
+  const int n = cv::connectedComponents(regions, part, 8, CV_32S);
+  std::vector<uchar> keep(static_cast<std::size_t>(n), uchar{0});
+  for (int y = 0; y < part.rows; ++y)
+    for (int x = 0; x < part.cols; x += y == 0 || y + 1 == part.rows ? 1 : std::max(1, part.cols - 1))
+      keep[static_cast<std::size_t>(part(y, x))] = 255;
+  for (int y = 0; y < part.rows; ++y)
+    for (int x = 0; x < part.cols; ++x) regions(y, x) &= keep[static_cast<std::size_t>(part(y, x))];
+}
+
+/// Darkness relative to the mean of the light where it is seen. The surface through the light of the
+/// background, which front light shows between the beads only, is not extrapolated to the walls.
+cv::Mat1f against_mean_light(const Prepared& image) {
+  constexpr float kClear = 0.15F;
+  const cv::Size size = image.darkness.size();
+  double sum = 0, n = 0;
+  for (int y = 0; y < size.height; ++y) {
+    const SurfaceRow light = surface_row(image.light, y, size);
+    for (int x = 0; x < size.width; ++x)
+      if (image.darkness(y, x) < kClear) sum += static_cast<double>(light.at(x)), ++n;
+  }
+  cv::Mat1f even = image.darkness.clone();
+  if (n == 0) return even;
+  const auto mean = static_cast<float>(sum / n), unit = static_cast<float>(image.unit);
+  for (int y = 0; y < size.height; ++y) {
+    const SurfaceRow light = surface_row(image.light, y, size);
+    for (int x = 0; x < size.width; ++x)
+      even(y, x) = (1 - (1 - even(y, x) * unit) * light.at(x) / mean) / unit;
+  }
+  return even;
+}
+
+/// The walls of a cell that is lit from the front: a lamp lights their middle more than their corners, and
+/// they are as noisy as the beads. Absent where light and noise are even enough for the usual search.
+std::optional<cv::Mat1b> unevenly_lit_regions(const Prepared& image, double radius_px, double in_radii) {
+  constexpr double kEven = 0.1, kQuiet = 0.03, kAfter = 0.01;  // shares of the level
+  constexpr double kLeast = 1, kMost = 1.5;                    // px, smoothing
+  constexpr float kDark = 0.75F, kOfDarkest = 0.93F;
+  const cv::Mat1f darkness = against_mean_light(image), in_contrast = darkness / contrast_of(darkness);
+  const double noise = std::sqrt(noise_of(in_contrast).dark);
+  // Smoothing by s reduces white noise by 2 sqrt(pi) s.
+  const double by = std::clamp(noise / (2 * std::sqrt(std::numbers::pi) * kAfter), kLeast, kMost);
+  cv::Mat1f smooth;
+  blurred(in_contrast, by, smooth);
+  const double uneven = divide_by_level(smooth, radius_px);
+  if (uneven < kEven && noise < kQuiet) return std::nullopt;
+  cv::Mat1b regions = regions_near_darkest(smooth, smooth > kDark, kOfDarkest, in_radii * radius_px);
+  // Front light reaches a wall up to the border of the picture; dark regions inside are dense parts of the
+  // bed.
+  if (!regions.empty()) keep_at_border(regions);
+  return regions;
+}
+
 // Out of focus, the edge of a wall darkens its surroundings, the gaps of a crystal are nearly as dark as its
 // discs, and a wall is only a little darker than both. A second search with a higher threshold on a smoothed
 // picture then replaces the first.
-cv::Mat1b large_dark_regions(const cv::Mat1f& darkness, double radius_px, double in_radii) {
-  constexpr float kDark = 0.75F, kOfDarkest = 0.94F;
+cv::Mat1b large_dark_regions(const Prepared& image, bool bright, double radius_px, double in_radii) {
+  const cv::Mat1f& darkness = image.darkness;
+  constexpr float kDark = 0.75F, kOfDarkest = 0.93F;
   constexpr double kSharp = 1.3, kSmooth = 1;  // px
   constexpr double kOutOfFocus = 0.22;         // of the radius
 
   // Distances from an edge to either side, in units of the blur.
   constexpr double kTail = 2, kFromDark = 0.7, kFromDarkest = 1.55;
-  cv::Mat1b regions = regions_darker_than(kDark, darkness, in_radii * radius_px);
+  const auto uneven = bright ? unevenly_lit_regions(image, radius_px, in_radii) : std::nullopt;
+  cv::Mat1b regions = uneven ? *uneven : regions_darker_than(kDark, darkness, in_radii * radius_px);
   cv::Mat1b bars = straight_bars(darkness, 2 * radius_px, 2 * in_radii * radius_px);
   if (regions.empty() && bars.empty()) return {};
   const double blur = blur_of(darkness);
   constexpr double kBent = 3;  // blurs; the rims of smaller beads do not bend visibly
   if (radius_px < kBent * blur) bars = {};
   if (regions.empty() && bars.empty()) return {};
-  double beside = (kTail + kFromDark) * blur;
-  if (!regions.empty() && blur > std::max(kSharp, kOutOfFocus * radius_px)) {
+  double beside = (kTail + (uneven ? kFromDarkest : kFromDark)) * blur;
+  if (!uneven && !regions.empty() && blur > std::max(kSharp, kOutOfFocus * radius_px)) {
     cv::Mat1f smooth;
-    cv::GaussianBlur(darkness, smooth, {0, 0}, kSmooth);
-    std::vector<float> levels;
-    for (int y = 0; y < smooth.rows; ++y)
-      for (int x = 0; x < smooth.cols; ++x)
-        if (regions(y, x) != 0) levels.push_back(smooth(y, x));
-    constexpr double kNearlyAll = 0.9;
-    const auto at =
-        levels.begin() + static_cast<std::ptrdiff_t>(kNearlyAll * static_cast<double>(levels.size()));
-    std::nth_element(levels.begin(), at, levels.end());
-    regions = regions_darker_than(kOfDarkest * *at, smooth, in_radii * radius_px);
+    blurred(darkness, kSmooth, smooth);
+    regions = regions_near_darkest(smooth, regions, kOfDarkest, in_radii * radius_px);
     beside = (kTail + kFromDarkest) * blur;
   }
   if (!bars.empty()) {
@@ -391,7 +509,7 @@ Prepared prepare(const cv::Mat& grey, const PreprocessOptions& options, double r
       d[x] = bright > 0 ? bounded : 0.0F;
     }
   }
-  p.opaque = large_dark_regions(p.darkness, radius_px, options.opaque_radii);
+  p.opaque = large_dark_regions(p, options.bright, radius_px, options.opaque_radii);
   return p;
 }
 

@@ -37,16 +37,17 @@ struct Place {
   double part;
 };
 
-/// A level, among those of all sizes, and its share in a pixel.
+/// A level, among those of all sizes, its share in a pixel, and the disc from which it comes.
 struct Term {
   Eigen::Index level;
   double share;
+  std::size_t disc;
 };
 
 class Explanation {
  public:
   Explanation(const cv::Mat1f& grey, const std::vector<Detection>& discs, const std::vector<double>& radii,
-              double neighbour_radius)
+              double neighbour_radius, const cv::Mat1b& walls)
       : grey_(grey), discs_(discs), noise_(noise_level(grey)), owner_(grey.size(), -1) {
     for (const double r : radii) {
       Size s;
@@ -68,6 +69,7 @@ class Explanation {
     amplitude_.assign(discs.size(), 1);
     offset_.assign(discs.size(), 0);
     share_pixels();
+    if (!walls.empty()) owner_.setTo(-1, walls);
     one_layer_ = std::none_of(discs.begin(), discs.end(), [](const Detection& d) { return d.overlap; });
     collect_terms();
   }
@@ -77,6 +79,7 @@ class Explanation {
       learn_profiles(round == 0);
       render();
       level_discs();
+      render();
     }
     measure();
     PictureEvidence result = gains();
@@ -139,8 +142,8 @@ class Explanation {
         const Place p = place(s, out);
         const auto level = static_cast<Eigen::Index>(s.first + p.k);
         std::size_t& at = next[pixel_at(x, y)];
-        terms_[at++] = {level, 1 - p.part};
-        terms_[at++] = {level + 1, p.part};
+        terms_[at++] = {level, 1 - p.part, b};
+        terms_[at++] = {level + 1, p.part, b};
       });
     }
   }
@@ -159,17 +162,17 @@ class Explanation {
         const double v = static_cast<double>(grey_(y, x)) - offset_[b];
         double weight = 1;
         if (!first) {
-          const double e = v - amplitude_[b] * (static_cast<double>(model_(y, x)));
+          const double e = v - static_cast<double>(model_(y, x));
           const double scale = 10 * noise_;
           weight = scale * scale / (scale * scale + e * e);
         }
         const std::span terms(terms_.data() + first_term_[pixel], terms_.data() + first_term_[pixel + 1]);
         for (const Term& t : terms) {
-          const double share = weight * amplitude_[b] * t.share;
+          const double share = weight * amplitude_[t.disc] * t.share;
           right[t.level] += share * v;
           if (first) a(n - 1, t.level) += share;
           for (const Term& u : terms)
-            if (u.level <= t.level) a(t.level, u.level) += share * amplitude_[b] * u.share;
+            if (u.level <= t.level) a(t.level, u.level) += share * amplitude_[u.disc] * u.share;
         }
         if (first) a(n - 1, n - 1) += 1, right[n - 1] += v;
         ++pixels;
@@ -190,14 +193,17 @@ class Explanation {
       for (std::size_t k = 0; k < s.count; ++k) s.level[k] = solved[static_cast<Eigen::Index>(s.first + k)];
   }
 
-  /// The sum of the profiles of all discs.
+  /// The sum of the profiles of all discs, each with its amplitude, and the profile of the owner alone.
   void render() {
     model_ = cv::Mat1f::zeros(grey_.size());
+    own_ = cv::Mat1f::zeros(grey_.size());
     for (std::size_t b = 0; b < discs_.size(); ++b) {
       const Size& s = sizes_[size_of_[b]];
       over_shown(b, [&](int x, int y, double out) {
         const Place p = place(s, out);
-        model_(y, x) += static_cast<float>((1 - p.part) * s.level[p.k] + p.part * s.level[p.k + 1]);
+        const double f = (1 - p.part) * s.level[p.k] + p.part * s.level[p.k + 1];
+        model_(y, x) += static_cast<float>(amplitude_[b] * f);
+        if (owner_(y, x) == static_cast<int>(b)) own_(y, x) = static_cast<float>(f);
       });
     }
   }
@@ -209,6 +215,7 @@ class Explanation {
       double n = 0, m = 0, v = 0, mm = 0, mv = 0;
     };
     constexpr double kLeast = 0.5, kMost = 1.5;
+    const std::vector<double> rendered = amplitude_;
     for (int pass = 0; pass < 2; ++pass) {
       std::vector<Sums> sums(discs_.size());
       for (int y = 0; y < grey_.rows; ++y)
@@ -216,7 +223,8 @@ class Explanation {
           const int b = owner_(y, x);
           if (b < 0) continue;
           const auto k = static_cast<std::size_t>(b);
-          const auto m = static_cast<double>(model_(y, x)), v = static_cast<double>(grey_(y, x));
+          const auto m = static_cast<double>(own_(y, x)),
+                     v = static_cast<double>(grey_(y, x) - model_(y, x)) + rendered[k] * m;
           double w = 1;
           if (pass > 0) {
             const double e = v - offset_[k] - amplitude_[k] * m, scale = 10 * noise_;
@@ -237,7 +245,7 @@ class Explanation {
 
   [[nodiscard]] double residual(int x, int y) const {
     const auto b = static_cast<std::size_t>(owner_(y, x));
-    return static_cast<double>(grey_(y, x)) - offset_[b] - amplitude_[b] * static_cast<double>(model_(y, x));
+    return static_cast<double>(grey_(y, x)) - offset_[b] - static_cast<double>(model_(y, x));
   }
   /// e_0 of a pixel: the smallest rms difference, over sqrt 2, to the two pixels at a distance on a straight
   /// line through it. In uniform areas the smallest of several would be below the noise.
@@ -387,7 +395,8 @@ class Explanation {
   std::vector<Term> terms_;
   cv::Mat1i owner_;  // the disc that a pixel belongs to; -1: none
   cv::Mat1f out_;    // r - R of that disc
-  cv::Mat1f model_;  // sum of the profiles
+  cv::Mat1f model_;  // sum of the profiles, each times its amplitude
+  cv::Mat1f own_;    // the profile of the owner, without its amplitude
 };
 
 }  // namespace
@@ -423,13 +432,14 @@ double noise_level(const cv::Mat1f& grey) {
 }
 
 PictureEvidence picture_evidence(const cv::Mat& grey, const std::vector<Detection>& discs,
-                                 const std::vector<double>& radii_px, double neighbour_radius_px) {
+                                 const std::vector<double>& radii_px, double neighbour_radius_px,
+                                 const cv::Mat1b& walls) {
   if (discs.empty() || grey.empty())
     return {0, std::vector<double>(discs.size(), 0.0), std::vector<double>(discs.size(), 0.0),
             std::vector<RimShift>(discs.size())};
   cv::Mat1f levels;
   grey.convertTo(levels, CV_32F);
-  return Explanation(levels, discs, radii_px, neighbour_radius_px).evidence();
+  return Explanation(levels, discs, radii_px, neighbour_radius_px, walls).evidence();
 }
 
 }  // namespace twincell::imaging

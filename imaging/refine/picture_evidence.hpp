@@ -10,7 +10,7 @@
 /// water line); it fails at round rims.
 ///
 /// With discs, a pixel within 2.5 px of a disc or inside it belongs to the disc b whose rim is nearest:
-///     I(p) = o_b + a_b sum_k f(r_k - R_k).
+///     I(p) = o_b + sum_k a_k f(r_k - R_k).
 /// Where discs overlap in projection (Detection::overlap), the sum has the term of b alone. The radial
 /// profile f is common to the discs of one size and is learnt from the picture, as is the scale
 /// s_1 of the residual e_1 at each r - R. Where the profile describes the picture worse than the
@@ -57,9 +57,11 @@ struct PictureEvidence {
 /// \param radii_px   the sizes; each disc belongs to the nearest. At least one
 /// \param neighbour_radius_px  R of the distances above; 0: that of each disc's size. Sets of discs of
 ///     different sizes can be compared only if it is the same for all
+/// \param walls pixels that belong to no disc where not 0; empty: none
 /// Pure.
 PictureEvidence picture_evidence(const cv::Mat& grey, const std::vector<Detection>& discs,
-                                 const std::vector<double>& radii_px, double neighbour_radius_px = 0);
+                                 const std::vector<double>& radii_px, double neighbour_radius_px = 0,
+                                 const cv::Mat1b& walls = {});
 
 /// Index of the size, among at least one, to which a radius has the smallest ratio.
 std::size_t nearest_size(double radius, const std::vector<double>& radii);

@@ -71,7 +71,10 @@ TriedSettings try_one(const ExaminedRegion& region, const LocatorOptions& given,
   const std::vector<Detection>& beads = located.beads;
   std::vector<double> radii = {0.5 * options.diameter_px};
   for (const double d : options.other_diameters_px) radii.push_back(0.5 * d);
-  const PictureEvidence evidence = picture_evidence(region.picture, beads, radii, region.neighbour_radius_px);
+  const cv::Mat1b walls =
+      prepare(region.picture, options.preprocess, *std::max_element(radii.begin(), radii.end())).opaque;
+  const PictureEvidence evidence =
+      picture_evidence(region.picture, beads, radii, region.neighbour_radius_px, walls);
   TriedSettings tried{settings, evidence.total, beads.size()};
   // A stated size is that of round objects. Rims of patterned discs vary with direction.
   if (given.diameter_px <= 0 && model_of(options.refine) != DiscModel::circle) {

@@ -45,8 +45,9 @@ cv::Mat1b read_mask(const std::string& file) {
 }  // namespace
 
 LocatorOptions locator_of(const LocatingRequest& request, std::optional<double> scale_px,
-                          std::optional<bool> bright) {
+                          std::optional<bool> bright, const std::optional<std::string>& refine) {
   LocatorOptions locator = request.locator;
+  if (refine && !request.refine_given) locator.refine.method = *refine;
   if (request.diameters.empty()) {
     locator.diameter_px = scale_px.value_or(0);
     locator.diameter_of_scale = scale_px.has_value();

@@ -19,6 +19,7 @@ namespace twincell::imaging {
 struct LocatingRequest {
   LocatorOptions locator;         ///< its diameters are those of `diameters`
   std::vector<double> diameters;  ///< px, up to 8; empty: from the scale of the cell, else from the frames
+  bool refine_given = false;      ///< the refiner of `locator` is the user's, not the default
   bool dark = false;              ///< the beads are darker than the background
   std::string flat;               ///< flat field (open_flattened.hpp)
   std::string background;         ///< picture of the cell without beads
@@ -29,8 +30,9 @@ struct LocatingRequest {
 
 /// The locator's options. \param scale_px bead diameter if none is requested; absent: determined from the
 /// frames \param bright polarity that the cell states; absent: unknown
+/// \param refine refiner that the cell states, used if none is requested
 LocatorOptions locator_of(const LocatingRequest& request, std::optional<double> scale_px = {},
-                          std::optional<bool> bright = {});
+                          std::optional<bool> bright = {}, const std::optional<std::string>& refine = {});
 /// The part of the picture. \throws ConfigError if `roi` cannot be read, InputError if `mask` cannot
 Region region_of(const LocatingRequest& request);
 /// The chosen frames. \throws ConfigError if the text cannot be read

@@ -114,7 +114,7 @@ Cost measure_cost(const Scene& scene, double seconds, int threads, Progress& pro
     cost.seconds_per_step = driven.seconds / static_cast<double>(driven.steps);
     const bool bed = falls && !plan.event_driven && cost.beads > 0;
     if (bed && driven.steps < std::min(plan.steps, plan.steps_per_period)) {
-      cost.relative_work = driven_work(scene.drive.gamma(scene.g()), layers_of(scene, cost.beads));
+      cost.relative_work = driven_work(scene.drive.gamma(), layers_of(scene, cost.beads));
       cost.seconds_per_step =
           *cost.relative_work * seconds_per_step_at_rest(scene, seconds, threads, progress);
     }

@@ -183,8 +183,7 @@ void list_effects(const Scene& s, const Chosen& chosen, Plan& plan) {
   if (s.drive.moves())
     add("drive", State::on,
         fmt::format("{} along {}, Gamma = {:.6g}{}, {}", s.drive.formula(),
-                    "xyz"[static_cast<int>(s.drive.axis)], s.drive.gamma(s.g() > 0 ? s.g() : 1),
-                    beyond_the_sine(s.drive, s.g()),
+                    "xyz"[static_cast<int>(s.drive.axis)], s.drive.gamma(), beyond_the_sine(s.drive, s.g()),
                     !s.envelope.points.empty()
                         ? fmt::format("amplitude schedule over {:g} cycles", s.envelope.duration())
                     : s.in_motion ? "from the phase of the frame at which the start continues"
@@ -239,7 +238,7 @@ void choose_stepping(const Scene& s, std::size_t beads, Plan& plan) {
   constexpr std::size_t kMost = 200;
   const std::string hindrance = why_not_event_driven(s, plan);
   // Without gravity beads do not come to rest on each other, with or without a drive.
-  const double w = s.g() > 0 ? s.drive.k_m(s.g()) : HUGE_VAL;
+  const double w = s.g() > 0 ? s.drive.k_m() : HUGE_VAL;
   if (s.stepping == Stepping::event_driven && !hindrance.empty())
     throw ConfigError(s.where("time.stepping"),
                       fmt::format("is \"event-driven\", but {}; choose \"auto\" or \"steps\".", hindrance));

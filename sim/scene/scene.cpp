@@ -596,6 +596,7 @@ Scene interpret(Config& config, const std::string& name, const std::filesystem::
   scene.drive.amplitude = solved.amplitude;
   scene.drive.omega = solved.omega;
   scene.drive.recorded = solved.recorded;
+  if (scene.g() > 0) scene.drive.gravity = scene.g();
   if (ramp)
     scene.drive.ramp = make_ramp(*ramp, scene.drive, spec, g, cycles_before(scene.envelope, scene.discard),
                                  scene.cycles, drive);
@@ -655,8 +656,8 @@ void displace(Config& lower, const Config& upper) {
   lower.yield_to(upper, "drive", {"omega", "frequency"});
 }
 
-/// Applies assignments to a scene. An assigned K_m replaces a Gamma of the scene; two assignments that
-/// contradict each other are refused later.
+/// Applies assignments to a scene. An assigned K_m replaces a Gamma of the scene, and the amplitude of a
+/// scene that states amplitude and frequency; assignments that contradict each other are refused later.
 void assign(Config& config, const std::vector<std::string>& assignments) {
   Config upper = Config::from_text("", "--set");
   for (const auto& assignment : assignments) {
@@ -668,6 +669,7 @@ void assign(Config& config, const std::vector<std::string>& assignments) {
   config.yield_to(upper, "drive", {"gamma", "k_m", "peak_velocity"});
   config.yield_to(upper, "drive.ramp", {"amplitude", "gamma", "k_m", "peak_velocity"});
   config.yield_to(upper, "drive.ramp", {"omega", "frequency"});
+  displace_third_quantity(config, assignments);
   for (const auto& assignment : assignments) config.assign(assignment);
 }
 
@@ -748,7 +750,7 @@ std::vector<Wall> Scene::walls() const {
 RunConditions conditions_of(const Scene& scene, std::optional<std::size_t> beads) {
   RunConditions conditions{.n_l = {}, .gamma = {}, .start = std::string(start_row(scene.start).word)};
   if (beads) conditions.n_l = static_cast<double>(*beads) / scene.width;
-  if (scene.g() > 0 && !scene.drive.ramp) conditions.gamma = scene.drive.gamma(scene.g());
+  if (scene.g() > 0 && !scene.drive.ramp) conditions.gamma = scene.drive.gamma();
   return conditions;
 }
 

@@ -91,3 +91,37 @@ TEST_F(DoubtfulRuns, UnitsOfAScaleAreNoted) {
   EXPECT_EQ(simulate("right.h5", {"scale.sigma_mm=2", "scale.gravity_m_s2=9.81"}).err.find("note"),
             std::string::npos);
 }
+
+TEST_F(DoubtfulRuns, ComparedFrequenciesThatDifferAreNoted) {
+  ASSERT_EQ(simulate("slow.h5", {}).code, 0);
+  ASSERT_EQ(simulate("fast.h5", {"drive.omega=2.0"}).code, 0);
+  const Ran ran = run_program({"compare", "--experiment", folder_ / "slow.h5", "--simulation",
+                               folder_ / "fast.h5", "-o", folder_ / "report"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  // K_m = Gamma^2 g^2/(omega^2 sigma g)
+  EXPECT_NE(ran.err.find("K_m is 0.5625 in slow.h5 and 0.1406 in fast.h5"), std::string::npos) << ran.err;
+}
+
+TEST_F(DoubtfulRuns, ImportedVelocitiesRadiiAndJumpsThatContradictThePositionsAreNoted) {
+  // Four beads, side by side, move along x with unit velocity.
+  const auto note = [&](double velocity, double radius, double jump) {
+    std::ofstream table(folder_ / "beads.csv");
+    table << "frame,particle,time,x,y,vx,vy,radius\n";
+    for (int f = 0; f < 6; ++f)
+      for (int i = 0; i < 4; ++i)
+        table << f << ',' << i << ',' << 0.1 * f << ',' << 1 + i + 0.1 * f + (f == 3 && i == 2 ? jump : 0)
+              << ",1," << velocity << ",0," << radius << '\n';
+    table.close();
+    const Ran ran =
+        run_program({"import", folder_ / "beads.csv", "-o", folder_ / "in.h5", "--force", "--y-up"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return ran.err;
+  };
+  const std::string far = "times as far as their velocities say", wide = "the radii may be diameters",
+                    jump = "moves by 1000 bead diameters between the frames";
+  for (const std::string& said : {far, wide, jump})
+    EXPECT_EQ(note(1, 0.5, 0).find(said), std::string::npos) << said;
+  EXPECT_NE(note(0.001, 0.5, 0).find("move 1e+03 " + far), std::string::npos);
+  EXPECT_NE(note(1, 1, 0).find(wide), std::string::npos);
+  EXPECT_NE(note(1, 0.5, 1000).find(jump), std::string::npos);
+}

@@ -308,5 +308,105 @@ TEST(New, AMissingStackIsAnError) {
   EXPECT_TRUE(names_in(folder.path()).empty());
 }
 
+// A lamp in front lights the corners of a picture less than its middle. The walls, as bright as the beads,
+// were taken for beads, and evidence from their pixels made profiles win, with a scale 1.6 % too small.
+TEST(New, CoarseBrightBeadsUnderALampInFrontAreMeasured) {
+  const TemporaryFolder folder;
+  put_file(
+      folder / "scene.toml",
+      "preset = \"fortini-huang-2015\"\n[cell]\nwidth = 17.0\n[beads]\ncount = 150\n[drive]\ngamma = 1.4\n"
+      "omega = 1.8\n[start]\nkind = \"random\"\nseed = 11\n[time]\ndiscard = 4\ncycles = 5\nphases = 10\n");
+  ASSERT_EQ(run_program({"simulate", folder / "scene.toml", "-o", folder / "sim.h5", "-q"}).code, 0);
+  ASSERT_EQ(run_program({"render",
+                         folder / "sim.h5",
+                         "-o",
+                         folder / "film",
+                         "-q",
+                         "--seed",
+                         "4",
+                         "--bright",
+                         "--pixels-per-sigma",
+                         "8",
+                         "--margin",
+                         "26",
+                         "--backlight",
+                         "150",
+                         "--rotation",
+                         "-0.8",
+                         "--blur",
+                         "0.9",
+                         "--vignetting",
+                         "0.3",
+                         "--lamp-drift",
+                         "-0.1",
+                         "--black-level",
+                         "12",
+                         "--electrons-per-level",
+                         "8",
+                         "--read-noise",
+                         "3"})
+                .code,
+            0);
+  fs::remove(folder / "film/CELL.toml");
+  ASSERT_EQ(
+      run_program({"new", folder / "film", "-o", folder / "new.toml", "--drive-gamma", "1.4", "-q"}).code, 0);
+  const imaging::CellDescription cell = imaging::read_cell(folder / "new.toml");
+  EXPECT_TRUE(cell.bright);
+  EXPECT_EQ(cell.refine, std::nullopt);
+  EXPECT_NEAR(cell.pixels_per_sigma.value(), 8, 0.02);
+  EXPECT_NEAR(cell.width.value(), 17, 0.05);
+  EXPECT_NEAR(cell.rotation_deg, -0.8, 0.05);
+  EXPECT_EQ(cell.phase_lock.frames_per_cycle, 10);
+  EXPECT_EQ(cell.phase_lock.first_phase, 0);
+  const auto drive = cell.drive();
+  ASSERT_TRUE(drive);
+  EXPECT_NEAR(drive->amplitude, 1.4 / (1.8 * 1.8), 0.01);
+  const Ran track = run_program(
+      {"track", folder / "film", "--cell", folder / "new.toml", "-o", folder / "film.h5", "--json"});
+  ASSERT_EQ(track.code, 0) << track.err;
+  const auto found = nlohmann::json::parse(track.out);
+  EXPECT_NEAR(found.at("tracks").get<double>(), 150, 5) << track.out;
+  // A frame counter, far brighter than the beads, does not set the scale of darkness: the walls are still
+  // seen.
+  for (const auto& entry : fs::directory_iterator(folder / "film"))
+    if (entry.path().extension() == ".png") {
+      cv::Mat frame = cv::imread(entry.path().string(), cv::IMREAD_GRAYSCALE);
+      cv::putText(frame, "01234", {2, 11}, cv::FONT_HERSHEY_SIMPLEX, 0.4, 255);
+      cv::imwrite(entry.path().string(), frame);
+    }
+  ASSERT_EQ(
+      run_program({"new", folder / "film", "-o", folder / "text.toml", "--drive-gamma", "1.4", "-q"}).code,
+      0);
+  const imaging::CellDescription with_text = imaging::read_cell(folder / "text.toml");
+  EXPECT_NEAR(with_text.pixels_per_sigma.value(), 8, 0.03);
+  EXPECT_NEAR(with_text.width.value(), 17, 0.05);
+  EXPECT_NEAR(with_text.origin.value().x_px, cell.origin.value().x_px, 0.1);
+}
+
+// Coarse, noisy beads hide the plate where it is lowest. A cycle of 22 to 24 frames, of which the same ones
+// are lost each time, fitted the rest better than the film's 20.
+TEST(New, ATroughThatIsNotSeenInventsNoLostFrames) {
+  const TemporaryFolder folder;
+  put_file(
+      folder / "scene.toml",
+      "preset = \"fortini-huang-2015\"\n[cell]\nwidth = 12.0\n[beads]\ncount = 100\n[drive]\ngamma = 1.2\n"
+      "omega = 1.5\n[start]\nkind = \"random\"\nseed = 7\n[time]\ndiscard = 4\ncycles = 6\nphases = 20\n");
+  ASSERT_EQ(run_program({"simulate", folder / "scene.toml", "-o", folder / "sim.h5", "-q"}).code, 0);
+  ASSERT_EQ(run_program({"render", folder / "sim.h5", "-o", folder / "film", "-q", "--seed", "2",
+                         "--pixels-per-sigma", "8", "--margin", "26", "--backlight", "150",
+                         "--electrons-per-level", "8", "--read-noise", "3"})
+                .code,
+            0);
+  fs::remove(folder / "film/CELL.toml");
+  ASSERT_EQ(
+      run_program({"new", folder / "film", "-o", folder / "new.toml", "--drive-gamma", "1.2", "-q"}).code, 0);
+  const imaging::CellDescription cell = imaging::read_cell(folder / "new.toml");
+  EXPECT_EQ(cell.phase_lock.frames_per_cycle, 20);
+  EXPECT_EQ(cell.phase_lock.first_phase, 0);
+  const auto drive = cell.drive();
+  ASSERT_TRUE(drive);
+  EXPECT_NEAR(drive->amplitude, 1.2 / (1.5 * 1.5), 0.01);
+}
+
 }  // namespace
 }  // namespace twincell

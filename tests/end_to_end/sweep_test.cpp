@@ -237,6 +237,30 @@ TEST_F(Sweeps, ASearchBracketsTheOnsetOfBouncingWhateverTheEngine) {
   EXPECT_EQ(collected(plan, at("t")), one);
 }
 
+TEST_F(Sweeps, AShortSearchAnEditedSceneAndDecimalCommasAreNamed) {
+  const std::string plan = at("search.toml");
+  const auto search = [&](const char* perturbation) {
+    write(plan, "results = [\"s_b\"]\n" + std::string(kScene) + "start.perturbation = " + perturbation +
+                    "\n[search]\nverdict = \"bouncing\"\nrange = [1.0, 1.6]\nwidth = 0.02\nruns = 4\n");
+  };
+  search("1e-9");
+  const Ran short_of = run_program({"sweep", "run", plan, "--folder", at("s")});
+  ASSERT_EQ(short_of.code, kDone) << short_of.err;
+  EXPECT_NE(short_of.out.find("; not within search.width = 0.02 after search.runs = 4"), std::string::npos)
+      << short_of.out;
+  search("2e-9");
+  const Ran status = run_program({"sweep", "status", plan, "--folder", at("s")});
+  ASSERT_EQ(status.code, kDone) << status.err;
+  EXPECT_NE(status.err.find("4 results of another scene, seed or plan are there and are not used"),
+            std::string::npos)
+      << status.err;
+  const std::string commas = at("commas.toml");
+  write(commas, std::string(kScene) + "[axes]\ndrive.gamma = [1,5, 2,0]\n");
+  const Ran planned = run_program({"sweep", "plan", commas, "--folder", at("c")});
+  EXPECT_EQ(planned.code, kDone) << planned.err;
+  EXPECT_NE(planned.err.find("the 4 values 1; 5; 2; 0 do not ascend"), std::string::npos) << planned.err;
+}
+
 TEST_F(Sweeps, WhereNothingFlipsTheOnsetIsALimit) {
   const std::string plan = at("none.toml");
   write(plan, "results = [\"s_b\"]\n" + std::string(kScene) +

@@ -289,6 +289,11 @@ void H5mdReader::Impl::read_parameters() {
       }
       if (h5::exists(group.get(), "recorded"))
         drive.recorded = read_recorded(group.get(), {path.string(), 0, 0, "parameters/drive/recorded"});
+      if (h5::exists(group.get(), "gravity")) {
+        if (!h5::read_scalar(group.get(), "gravity", drive.gravity) ||
+            !(drive.gravity > 0 && std::isfinite(drive.gravity)))
+          refuse("parameters/drive/gravity", "must be a positive number.");
+      }
       read_drive_motion(group.get(), drive, {path.string(), 0, 0, "parameters/drive"});
       info.drive = drive;
     }
@@ -338,6 +343,12 @@ void H5mdReader::Impl::read_conditions() {
   };
   number("n_l", info.conditions.n_l);
   number("gamma", info.conditions.gamma);
+  // Versions without drive/gravity stored Gamma alone.
+  if (info.drive && info.drive->gravity == 1 && info.conditions.gamma.value_or(0) > 0) {
+    constexpr double kRounding = 1e-9;
+    const double g = info.drive->gamma() / *info.conditions.gamma;
+    if (g > 0 && std::abs(g - 1) > kRounding) info.drive->gravity = g;
+  }
   h5::read_text(group.get(), "start", info.conditions.start);
 }
 

@@ -157,6 +157,7 @@ void H5mdWriter::Impl::create_parameters() {
                             : info.drive->formula() + ", cycle begins at omega t = 0");
     h5::write_scalar(drive.get(), "amplitude", info.drive->amplitude);
     h5::write_scalar(drive.get(), "omega", info.drive->omega);
+    if (info.drive->gravity != 1) h5::write_scalar(drive.get(), "gravity", info.drive->gravity);
     std::vector<double> harmonics;
     for (const Harmonic& h : info.drive->harmonics) harmonics.insert(harmonics.end(), {h.amplitude, h.phase});
     if (!harmonics.empty())

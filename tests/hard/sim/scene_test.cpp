@@ -634,6 +634,31 @@ TEST(DriveOfAScene, HarmonicsInPercentAreWarnedOf) {
   EXPECT_NE(doubts[0].find("harmonic 3 of the drive is 10 times the first"), std::string::npos) << doubts[0];
 }
 
+// The scene of a twin states A and omega. A sweep over Gamma keeps omega, so that A = Gamma g/omega^2.
+TEST(DriveOfAScene, AnAssignedStrengthReplacesTheAmplitude) {
+  const auto drive = [](const std::string& stated, const std::vector<std::string>& assigned) {
+    return read_scene_text("preset = \"fortini-huang-2015\"\n[beads]\ncount = 9\n" + stated, "s", assigned)
+        .drive;
+  };
+  const std::string twin = "[drive]\namplitude = 1.6\nomega = 0.5\n";
+  EXPECT_EQ(drive(twin, {"drive.gamma=2.0"}).omega, 0.5);
+  EXPECT_DOUBLE_EQ(drive(twin, {"drive.gamma=2.0"}).amplitude, 8);
+  EXPECT_DOUBLE_EQ(drive(twin, {"drive.k_m=4.0"}).amplitude, 4);
+  EXPECT_EQ(drive(twin, {"drive.amplitude=3.0"}).omega, 0.5);
+  EXPECT_EQ(drive(twin, {"drive.omega=2.0"}).amplitude, 1.6);
+  EXPECT_DOUBLE_EQ(drive(twin, {"drive.gamma=2.0", "drive.omega=2.0"}).amplitude, 0.5);
+  EXPECT_DOUBLE_EQ(drive(twin, {"drive.gamma=2.0", "drive.amplitude=2.0"}).omega, 1);
+  EXPECT_DOUBLE_EQ(drive("[drive]\nfrequency = 0.5\ngamma = 2.0\n", {"drive.amplitude=3.0"}).omega,
+                   std::numbers::pi);
+  const std::string in_mm =
+      "[drive]\namplitude_mm = 2.0\nfrequency_hz = 10.0\n[scale]\nsigma_mm = 1.0\ngravity_m_s2 = 10.0\n";
+  EXPECT_NEAR(drive(in_mm, {"drive.peak_acceleration_g=2.0"}).omega, 0.2 * std::numbers::pi, 1e-12);
+  EXPECT_NEAR(drive(in_mm, {"drive.gamma=2.0"}).gamma(), 2, 1e-12);
+  EXPECT_THROW((void)drive(twin, {"drive.gamma=2.0", "drive.amplitude=3.0", "drive.omega=2.0"}), ConfigError);
+  // Of A and Gamma, an assigned omega does not tell which stays.
+  EXPECT_THROW((void)drive("[drive]\namplitude = 2.0\ngamma = 2.0\n", {"drive.omega=3.0"}), ConfigError);
+}
+
 TEST(Presets, AreThePapersCells) {
   const Scene horizontal =
       read_scene_text("preset = \"bhateja-2016-horizontal\"\n[drive]\nk_m = 100.0\n", "s");

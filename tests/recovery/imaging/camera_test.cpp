@@ -494,9 +494,12 @@ TEST(Camera, PathsThatCannotBeDrawnAreRefused) {
   EXPECT_THROW(SyntheticCamera(o, info), ConfigError);
   info.phases_per_cycle = 8;
   EXPECT_NO_THROW(SyntheticCamera(o, info));
+  const TemporaryFolder folder;
+  o.exposure = 100;  // longer than the whole record
+  expect_refusal<ConfigError>([&] { render(flight(true), o, RenderJob{.folder = folder / "a"}); }, "exposure",
+                              "t0 is longer than");
   o = {};
   o.trigger_jitter = 1;
-  const TemporaryFolder folder;
   EXPECT_THROW(render(flight(true), o, RenderJob{.folder = folder / "a"}), ConfigError)
       << "frames would change places";
   EXPECT_FALSE(std::filesystem::exists(folder / "a"));

@@ -30,11 +30,11 @@ TEST(CellKeys, StatedDefaultsChangeNothing) {
   const auto told = [](const Assignments& assignments) {
     const CellDescription c = read_cell("", assignments);
     const auto tilt = c.side_tilt.value_or(std::array<double, 2>{0, 0});
-    return fmt::format("{} {} {} {} {} {} {} {} {}", c.rotation_deg, c.distortion,
+    return fmt::format("{} {} {} {} {} {} {} {} {} {}", c.rotation_deg, c.distortion,
                        c.phase_lock.frames_per_cycle, c.phase_lock.first_phase, c.phase_lock.offset, c.bright,
-                       static_cast<int>(c.sides), tilt[0], tilt[1]);
+                       c.refine.value_or("exact"), static_cast<int>(c.sides), tilt[0], tilt[1]);
   };
-  EXPECT_GE(expect_defaults_change_nothing(cell_keys(), told), 7);
+  EXPECT_GE(expect_defaults_change_nothing(cell_keys(), told), 8);
 }
 
 TEST(CellKeys, TheDriveHasItsHarmonics) {

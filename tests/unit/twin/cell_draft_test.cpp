@@ -59,9 +59,19 @@ imaging::CellDescription read(const CellDraft& draft, const CellSurvey& s) {
 // apart.
 TEST(CellDraft, TheScaleOfShadedBeadsIsTheDistanceOfTouchingOnes) {
   CellSurvey s = survey();
-  s.beads->spacing = calibration::Estimate{12.8, 0.01};
+  s.beads->spacing = calibration::Estimate{12.01, 0.01};
   EXPECT_EQ(key(draft_cell(s, {}), "camera.pixels_per_sigma").value, "12.0000");
-  s.plain_discs = false;
+  EXPECT_TRUE(draft_cell(s, {}).notes.empty());
+  s.beads->spacing = calibration::Estimate{12.8, 0.01};
+  const CellDraft wide = draft_cell(s, {});
+  EXPECT_EQ(key(wide, "camera.pixels_per_sigma").value, "12.800");
+  ASSERT_EQ(wide.notes.size(), 1U);
+  EXPECT_NE(wide.notes[0].find("discs are 12.0000 +- 0.006 px wide, and touching ones 12.800"),
+            std::string::npos)
+      << wide.notes[0];
+  EXPECT_EQ(draft_cell(s, {}).find("camera.refine"), nullptr);
+  s.refine = "profile";
+  EXPECT_EQ(read(draft_cell(s, {.gamma = 2}), s).refine, "profile");
   const CellDraft draft = draft_cell(s, {});
   EXPECT_EQ(key(draft, "camera.pixels_per_sigma").value, "12.800");
   EXPECT_NE(key(draft, "camera.pixels_per_sigma").comment.find("touching beads"), std::string::npos);
