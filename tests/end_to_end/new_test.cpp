@@ -308,49 +308,41 @@ TEST(New, AMissingStackIsAnError) {
   EXPECT_TRUE(names_in(folder.path()).empty());
 }
 
+namespace {
+
+/// Films a bed of the first paper with coarse, noisy pixels and measures the film: folder/film,
+/// folder/new.toml. \param bed keys of the scene \param gamma of the drive \param camera further options of
+/// `render`
+imaging::CellDescription measured_coarse_film(const TemporaryFolder& folder, const std::string& bed,
+                                              const std::string& gamma, const std::string& camera) {
+  put_file(folder / "scene.toml", "preset = \"fortini-huang-2015\"\nstart.kind = \"random\"\ndrive.gamma = " +
+                                      gamma + "\ntime.discard = 4\n" + bed);
+  EXPECT_EQ(run_program({"simulate", folder / "scene.toml", "-o", folder / "sim.h5", "-q"}).code, 0);
+  std::vector<std::string> words = {"render", folder / "sim.h5", "-o", folder / "film", "-q"};
+  std::istringstream options(
+      "--pixels-per-sigma 8 --margin 26 --backlight 150 --electrons-per-level 8 "
+      "--read-noise 3 " +
+      camera);
+  for (std::string word; options >> word;) words.push_back(word);
+  EXPECT_EQ(run_program(words).code, 0);
+  fs::remove(folder / "film/CELL.toml");
+  EXPECT_EQ(
+      run_program({"new", folder / "film", "-o", folder / "new.toml", "--drive-gamma", gamma, "-q"}).code, 0);
+  return imaging::read_cell(folder / "new.toml");
+}
+
+}  // namespace
+
 // A lamp in front lights the corners of a picture less than its middle. The walls, as bright as the beads,
 // were taken for beads, and evidence from their pixels made profiles win, with a scale 1.6 % too small.
 TEST(New, CoarseBrightBeadsUnderALampInFrontAreMeasured) {
   const TemporaryFolder folder;
-  put_file(
-      folder / "scene.toml",
-      "preset = \"fortini-huang-2015\"\n[cell]\nwidth = 17.0\n[beads]\ncount = 150\n[drive]\ngamma = 1.4\n"
-      "omega = 1.8\n[start]\nkind = \"random\"\nseed = 11\n[time]\ndiscard = 4\ncycles = 5\nphases = 10\n");
-  ASSERT_EQ(run_program({"simulate", folder / "scene.toml", "-o", folder / "sim.h5", "-q"}).code, 0);
-  ASSERT_EQ(run_program({"render",
-                         folder / "sim.h5",
-                         "-o",
-                         folder / "film",
-                         "-q",
-                         "--seed",
-                         "4",
-                         "--bright",
-                         "--pixels-per-sigma",
-                         "8",
-                         "--margin",
-                         "26",
-                         "--backlight",
-                         "150",
-                         "--rotation",
-                         "-0.8",
-                         "--blur",
-                         "0.9",
-                         "--vignetting",
-                         "0.3",
-                         "--lamp-drift",
-                         "-0.1",
-                         "--black-level",
-                         "12",
-                         "--electrons-per-level",
-                         "8",
-                         "--read-noise",
-                         "3"})
-                .code,
-            0);
-  fs::remove(folder / "film/CELL.toml");
-  ASSERT_EQ(
-      run_program({"new", folder / "film", "-o", folder / "new.toml", "--drive-gamma", "1.4", "-q"}).code, 0);
-  const imaging::CellDescription cell = imaging::read_cell(folder / "new.toml");
+  const imaging::CellDescription cell = measured_coarse_film(
+      folder,
+      "cell.width = 17.0\nbeads.count = 150\ndrive.omega = 1.8\nstart.seed = 11\ntime.cycles = "
+      "5\ntime.phases = 10\n",
+      "1.4",
+      "--bright --seed 4 --rotation -0.8 --blur 0.9 --vignetting 0.3 --lamp-drift -0.1 --black-level 12");
   EXPECT_TRUE(cell.bright);
   EXPECT_EQ(cell.refine, std::nullopt);
   EXPECT_NEAR(cell.pixels_per_sigma.value(), 8, 0.02);
@@ -387,20 +379,11 @@ TEST(New, CoarseBrightBeadsUnderALampInFrontAreMeasured) {
 // are lost each time, fitted the rest better than the film's 20.
 TEST(New, ATroughThatIsNotSeenInventsNoLostFrames) {
   const TemporaryFolder folder;
-  put_file(
-      folder / "scene.toml",
-      "preset = \"fortini-huang-2015\"\n[cell]\nwidth = 12.0\n[beads]\ncount = 100\n[drive]\ngamma = 1.2\n"
-      "omega = 1.5\n[start]\nkind = \"random\"\nseed = 7\n[time]\ndiscard = 4\ncycles = 6\nphases = 20\n");
-  ASSERT_EQ(run_program({"simulate", folder / "scene.toml", "-o", folder / "sim.h5", "-q"}).code, 0);
-  ASSERT_EQ(run_program({"render", folder / "sim.h5", "-o", folder / "film", "-q", "--seed", "2",
-                         "--pixels-per-sigma", "8", "--margin", "26", "--backlight", "150",
-                         "--electrons-per-level", "8", "--read-noise", "3"})
-                .code,
-            0);
-  fs::remove(folder / "film/CELL.toml");
-  ASSERT_EQ(
-      run_program({"new", folder / "film", "-o", folder / "new.toml", "--drive-gamma", "1.2", "-q"}).code, 0);
-  const imaging::CellDescription cell = imaging::read_cell(folder / "new.toml");
+  const imaging::CellDescription cell =
+      measured_coarse_film(folder,
+                           "cell.width = 12.0\nbeads.count = 100\ndrive.omega = 1.5\nstart.seed = "
+                           "7\ntime.cycles = 6\ntime.phases = 20\n",
+                           "1.2", "--seed 2");
   EXPECT_EQ(cell.phase_lock.frames_per_cycle, 20);
   EXPECT_EQ(cell.phase_lock.first_phase, 0);
   const auto drive = cell.drive();

@@ -1,0 +1,270 @@
+#include "imaging/preprocess/wall_regions.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "imaging/preprocess/straight_bars.hpp"
+
+namespace twincell::imaging {
+
+namespace {
+
+// The edge of a region lies within a block or two of its coarse picture. There, the region also enters beads
+// that touch it. Such bumps are narrower than a bead; the edge of the region is straight over that width. The
+// regions are continued beyond the border, as below.
+void trim_bumps(cv::Mat1b& regions, const cv::Mat1b& surely_inside, double disc_radius_px) {
+  const int half = cvRound(0.6 * disc_radius_px), width = 2 * half + 1;
+  cv::Mat1b continued;
+  cv::copyMakeBorder(regions, continued, half, half, half, half, cv::BORDER_REPLICATE);
+  const auto opened = [&](int rows, int columns) {
+    cv::Mat1b result;
+    cv::morphologyEx(continued, result, cv::MORPH_OPEN, cv::Mat1b(rows, columns, uchar{1}));
+    return cv::Mat1b(result(cv::Rect(half, half, regions.cols, regions.rows)));
+  };
+  regions &= (opened(1, width) & opened(width, 1)) | surely_inside;
+}
+
+/// Includes the blurred edge of regions.
+void include_edge(cv::Mat1b& regions) {
+  cv::dilate(regions, regions, cv::Mat(), cv::Point(-1, -1), 2);
+}
+
+// Morphological opening of the dark region by a disc, through two distance maps, at reduced resolution. The
+// opening is a few pixels too large or too small, but only within the dark region. The frame is continued
+// beyond its border, so that a thin strip of plate at the bottom of a frame counts as thick. Empty if there
+// is no such region.
+cv::Mat1b regions_darker_than(float limit, const cv::Mat1f& darkness, double disc_radius_px) {
+  constexpr double kCoarse = 6;  // radius of the disc in the coarse picture, px
+  const int shrink = std::max(1, static_cast<int>(disc_radius_px / kCoarse));
+  const cv::Size size((darkness.cols + shrink - 1) / shrink, (darkness.rows + shrink - 1) / shrink);
+  const double reach = disc_radius_px / shrink;
+  // Coarse picture: a block is dark only if all of its pixels are, because the gaps between beads are narrow.
+  const cv::Mat1b dark_pixels = darkness > limit;
+  cv::Mat1b dark = dark_pixels;
+  if (shrink > 1) {
+    dark = cv::Mat1b(size, uchar{255});
+    // Local copies: otherwise the compiler assumes that the stores change these numbers and does not
+    // vectorise.
+    const int columns = darkness.cols, blocks = size.width;
+    std::vector<uchar> dark_down(static_cast<std::size_t>(blocks * shrink));
+    for (int block = 0; block < size.height; ++block) {
+      std::fill(dark_down.begin(), dark_down.end(), uchar{255});
+      uchar *all = dark_down.data(), *to = dark[block];
+      for (int y = block * shrink; y < std::min(darkness.rows, (block + 1) * shrink); ++y) {
+        const uchar* pixel = dark_pixels[y];
+        for (int x = 0; x < columns; ++x) all[x] &= pixel[x];
+      }
+      for (int k = 0; k < shrink; ++k)
+        for (int b = 0; b < blocks; ++b) to[b] &= all[b * shrink + k];
+    }
+  }
+  const int pad = cvCeil(2 * reach);
+  cv::copyMakeBorder(dark, dark, pad, pad, pad, pad, cv::BORDER_REPLICATE);
+  // Corners: the continuation stays dark only if a wall leads into the corner, dark along one of the borders.
+  // A bead in the corner must not grow.
+  for (const bool right : {false, true})
+    for (const bool low : {false, true}) {
+      const int x = right ? pad + size.width - 1 : pad, y = low ? pad + size.height - 1 : pad;
+      const auto dark_along = [&](cv::Point step) {
+        const int far = std::min(pad, (step.x != 0 ? size.width : size.height) - 1);
+        for (int k = 0; k <= far; ++k)
+          if (dark(cv::Point(x, y) + k * step) == 0) return false;
+        return true;
+      };
+      if (dark_along({right ? -1 : 1, 0}) || dark_along({0, low ? -1 : 1})) continue;
+      dark(cv::Rect(right ? x + 1 : 0, low ? y + 1 : 0, pad, pad)).setTo(0);
+    }
+  if (cv::countNonZero(dark) == static_cast<int>(dark.total())) return {};
+  // Quick test: a square inside the disc, however distances are rounded, is much faster to search for, and
+  // most frames do not even contain the square.
+  constexpr double kSquare = 0.65;
+  const int side = 2 * static_cast<int>(kSquare * reach) + 1;
+  cv::Mat1b squares;
+  cv::erode(dark, squares, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
+  if (cv::countNonZero(squares) == 0) return {};
+  // Opening: erosion and dilation by thresholds on distance maps.
+  cv::Mat1f inside;
+  cv::distanceTransform(dark, inside, cv::DIST_L2, cv::DIST_MASK_5);
+  const cv::Mat1b core = inside > reach;
+  if (cv::countNonZero(core) == 0) return {};
+  cv::Mat1f to_core;
+  cv::distanceTransform(~core, to_core, cv::DIST_L2, cv::DIST_MASK_5);
+  const cv::Mat1f distance = to_core(cv::Rect(pad, pad, size.width, size.height));
+  const auto at_full_size = [&](const cv::Mat1b& blocks) {
+    cv::Mat1b full;
+    cv::resize(blocks, full, cv::Size(), shrink, shrink, cv::INTER_NEAREST);
+    return cv::Mat1b(full(cv::Rect(0, 0, darkness.cols, darkness.rows)));
+  };
+  cv::Mat1b regions = at_full_size(distance < reach + (shrink > 1 ? 1 : 0)) & dark_pixels;
+  trim_bumps(regions, at_full_size(distance < 0.5 * reach), disc_radius_px);
+  include_edge(regions);
+  return regions;
+}
+
+/// Gaussian blur that does not reach into the spare columns beside the picture.
+void blurred(const cv::Mat1f& picture, double by, cv::Mat1f& out) {
+  cv::GaussianBlur(picture, out, {0, 0}, by, by, cv::BORDER_DEFAULT | cv::BORDER_ISOLATED);
+}
+
+/// Divides the picture by the level of its dark parts, a quadratic surface. Beyond the levels of these parts
+/// nothing is extrapolated. \return the range of the level, relative to its largest value
+/// \param radius_px of beads, whose gaps do not lower the level
+double divide_by_level(cv::Mat1f& picture, double radius_px) {
+  constexpr int kPasses = 4;
+  constexpr float kDark = 0.4F;
+  constexpr double kNear = 0.85, kFar = 1.1;  // beyond these shares of the level are no walls and no beads
+  constexpr double kRidge = 1e-3;             // of the number of samples
+  constexpr double kSamples = 5000;
+  const int stride =
+      std::max(1, static_cast<int>(std::sqrt(static_cast<double>(picture.total()) / kSamples)));
+  const int wide = 2 * cvCeil(radius_px / 2) + 1;
+  cv::Mat1f highest;
+  cv::dilate(picture, highest, cv::getStructuringElement(cv::MORPH_RECT, {wide, wide}));
+  std::vector<std::pair<Surface, double>> samples;
+  for (int y = stride / 2; y < picture.rows; y += stride)
+    for (int x = stride / 2; x < picture.cols; x += stride)
+      if (picture(y, x) > kDark)
+        samples.emplace_back(surface_basis(x, y, picture.size()), static_cast<double>(highest(y, x)));
+  constexpr std::size_t kFewest = 60;
+  if (samples.size() < kFewest) return 0;
+  Surface level = Surface::Zero();
+  for (int pass = 0; pass < kPasses; ++pass) {
+    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+    Surface right = Surface::Zero();
+    for (const auto& [basis, value] : samples) {
+      const double expected = level.dot(basis);
+      if (pass > 0 && (value < kNear * expected || value > kFar * expected)) continue;
+      normal += basis * basis.transpose();
+      right += value * basis;
+    }
+    normal.diagonal().tail<5>().array() += kRidge * static_cast<double>(samples.size());
+    level = normal.ldlt().solve(right);
+  }
+  std::vector<float> levels;
+  for (const auto& [basis, value] : samples) levels.push_back(static_cast<float>(level.dot(basis)));
+  const auto [least, most] = std::minmax_element(levels.begin(), levels.end());
+  const float low = *least, high = *most;
+  if (!(low > 0)) return 0;
+  for (int y = 0; y < picture.rows; ++y) {
+    const SurfaceRow row = surface_row(level, y, picture.size());
+    for (int x = 0; x < picture.cols; ++x) picture(y, x) /= std::clamp(row.at(x), low, high);
+  }
+  return static_cast<double>((high - low) / high);
+}
+
+/// Regions of a smooth picture that are nearly as dark as its darkest parts.
+/// \param among the parts \param share of the darkest level
+cv::Mat1b regions_near_darkest(const cv::Mat1f& smooth, const cv::Mat1b& among, float share,
+                               double disc_radius_px) {
+  constexpr double kNearlyAll = 0.9;
+  std::vector<float> levels;
+  for (int y = 0; y < smooth.rows; ++y)
+    for (int x = 0; x < smooth.cols; ++x)
+      if (among(y, x) != 0) levels.push_back(smooth(y, x));
+  if (levels.empty()) return {};
+  const auto at =
+      levels.begin() + static_cast<std::ptrdiff_t>(kNearlyAll * static_cast<double>(levels.size()));
+  std::nth_element(levels.begin(), at, levels.end());
+  return regions_darker_than(share * *at, smooth, disc_radius_px);
+}
+
+/// Removes the regions that do not touch the border of the picture.
+void keep_at_border(cv::Mat1b& regions) {
+  cv::Mat1i part;
+  const int n = cv::connectedComponents(regions, part, 8, CV_32S);
+  std::vector<uchar> keep(static_cast<std::size_t>(n), uchar{0});
+  for (int y = 0; y < part.rows; ++y)
+    for (int x = 0; x < part.cols; x += y == 0 || y + 1 == part.rows ? 1 : std::max(1, part.cols - 1))
+      keep[static_cast<std::size_t>(part(y, x))] = 255;
+  for (int y = 0; y < part.rows; ++y)
+    for (int x = 0; x < part.cols; ++x) regions(y, x) &= keep[static_cast<std::size_t>(part(y, x))];
+}
+
+/// Darkness relative to the mean of the light where it is seen. The surface through the light of the
+/// background, which front light shows between the beads only, is not extrapolated to the walls.
+cv::Mat1f against_mean_light(const Prepared& image) {
+  constexpr float kClear = 0.15F;
+  const cv::Size size = image.darkness.size();
+  double sum = 0, n = 0;
+  for (int y = 0; y < size.height; ++y) {
+    const SurfaceRow light = surface_row(image.light, y, size);
+    for (int x = 0; x < size.width; ++x)
+      if (image.darkness(y, x) < kClear) sum += static_cast<double>(light.at(x)), ++n;
+  }
+  cv::Mat1f even = image.darkness.clone();
+  if (n == 0) return even;
+  const auto mean = static_cast<float>(sum / n), unit = static_cast<float>(image.unit);
+  for (int y = 0; y < size.height; ++y) {
+    const SurfaceRow light = surface_row(image.light, y, size);
+    for (int x = 0; x < size.width; ++x)
+      even(y, x) = (1 - (1 - even(y, x) * unit) * light.at(x) / mean) / unit;
+  }
+  return even;
+}
+
+/// The walls of a cell that is lit from the front: a lamp lights their middle more than their corners, and
+/// they are as noisy as the beads. Absent where light and noise are even enough for the usual search.
+std::optional<cv::Mat1b> unevenly_lit_regions(const Prepared& image, double radius_px, double in_radii) {
+  constexpr double kEven = 0.1, kQuiet = 0.03, kAfter = 0.01;  // shares of the level
+  constexpr double kLeast = 1, kMost = 1.5;                    // px, smoothing
+  constexpr float kDark = 0.75F, kOfDarkest = 0.93F;
+  const cv::Mat1f darkness = against_mean_light(image), in_contrast = darkness / contrast_of(darkness);
+  const double noise = std::sqrt(noise_of(in_contrast).dark);
+  // Smoothing by s reduces white noise by 2 sqrt(pi) s.
+  const double by = std::clamp(noise / (2 * std::sqrt(std::numbers::pi) * kAfter), kLeast, kMost);
+  cv::Mat1f smooth;
+  blurred(in_contrast, by, smooth);
+  const double uneven = divide_by_level(smooth, radius_px);
+  if (uneven < kEven && noise < kQuiet) return std::nullopt;
+  cv::Mat1b regions = regions_near_darkest(smooth, smooth > kDark, kOfDarkest, in_radii * radius_px);
+  // Front light reaches a wall up to the border of the picture; dark regions inside are dense parts of the
+  // bed.
+  if (!regions.empty()) keep_at_border(regions);
+  return regions;
+}
+
+}  // namespace
+
+// Out of focus, the edge of a wall darkens its surroundings, the gaps of a crystal are nearly as dark as its
+// discs, and a wall is only a little darker than both. A second search with a higher threshold on a smoothed
+// picture then replaces the first.
+cv::Mat1b wall_regions(const Prepared& image, bool bright, double radius_px, double in_radii) {
+  const cv::Mat1f& darkness = image.darkness;
+  constexpr float kDark = 0.75F, kOfDarkest = 0.93F;
+  constexpr double kSharp = 1.3, kSmooth = 1;  // px
+  constexpr double kOutOfFocus = 0.22;         // of the radius
+
+  // Distances from an edge to either side, in units of the blur.
+  constexpr double kTail = 2, kFromDark = 0.7, kFromDarkest = 1.55;
+  const auto uneven = bright ? unevenly_lit_regions(image, radius_px, in_radii) : std::nullopt;
+  cv::Mat1b regions = uneven ? *uneven : regions_darker_than(kDark, darkness, in_radii * radius_px);
+  cv::Mat1b bars = straight_bars(darkness, 2 * radius_px, 2 * in_radii * radius_px);
+  if (regions.empty() && bars.empty()) return {};
+  const double blur = blur_of(darkness);
+  constexpr double kBent = 3;  // blurs; the rims of smaller beads do not bend visibly
+  if (radius_px < kBent * blur) bars = {};
+  if (regions.empty() && bars.empty()) return {};
+  double beside = (kTail + (uneven ? kFromDarkest : kFromDark)) * blur;
+  if (!uneven && !regions.empty() && blur > std::max(kSharp, kOutOfFocus * radius_px)) {
+    cv::Mat1f smooth;
+    blurred(darkness, kSmooth, smooth);
+    regions = regions_near_darkest(smooth, regions, kOfDarkest, in_radii * radius_px);
+    beside = (kTail + kFromDarkest) * blur;
+  }
+  if (!bars.empty()) {
+    include_edge(bars);
+    regions = regions.empty() ? bars : cv::Mat1b(regions | bars);
+  }
+  const int wide = 2 * std::max(0, cvCeil(beside) - 2) + 1;
+  if (!regions.empty() && wide > 1)
+    cv::dilate(regions, regions, cv::getStructuringElement(cv::MORPH_ELLIPSE, {wide, wide}));
+  return regions;
+}
+
+}  // namespace twincell::imaging
