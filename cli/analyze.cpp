@@ -130,7 +130,7 @@ std::string as_text(const std::vector<analysis::Window>& windows, const std::vec
     if (name != "phase" && (only.empty() ? usual : true)) names.push_back(name);
   }
   const bool phase = analysis::seek_result(windows.front().results, "phase") != nullptr;
-  std::string text = fmt::format("{:<13} {:<17} {:<17}", "cycles", "Gamma (g = 1)", "omega, 1/t0");
+  std::string text = fmt::format("{:<13} {:<17} {:<17}", "cycles", "Gamma", "omega, 1/t0");
   if (phase) text += fmt::format(" {:<12}", "phase");
   for (const std::string& name : names) text += fmt::format(" {:>12}", name);
   const auto change = [](double begin, double end) {

@@ -52,30 +52,37 @@ class Draft {
     out_.keys.push_back({key, fmt::format("\"{}{}\"", kPlaceholder, what), comment, {}, true});
   }
 
+  /// Whether the distance of touching beads is known well enough for a scale; in a gas few beads touch.
+  [[nodiscard]] bool spacing_is_clear() const {
+    constexpr double kClear = 2e-3;  // relative error
+    return s_.beads->spacing && relative(*s_.beads->spacing) < kClear;
+  }
+  /// \pre spacing_is_clear() \param width of the discs
+  void scale_by_spacing(const calibration::Estimate& width) {
+    scale_ = s_.beads->spacing;
+    how_scale_ = fmt::format("distance of touching beads in {} frames; the discs are {} px wide",
+                             s_.beads->frames, value_text(width));
+  }
+
   /// Where discs that are not plain end depends on the light.
   void scale_of_shaded_discs(const calibration::Estimate& seen) {
-    constexpr double kClear = 2e-3;  // relative error; in a gas few beads touch
     if (s_.diameter_stated) {
       scale_ = calibration::Estimate{s_.diameter_px, 0};
       how_scale_ = fmt::format("stated with --diameter; the discs are {} px wide", value_text(seen));
-    } else if (s_.beads->spacing && relative(*s_.beads->spacing) < kClear) {
-      scale_ = s_.beads->spacing;
-      how_scale_ = fmt::format("distance of touching beads in {} frames; the discs are {} px wide",
-                               s_.beads->frames, value_text(seen));
+    } else if (spacing_is_clear()) {
+      scale_by_spacing(seen);
     }
   }
 
   /// Touching beads are one diameter apart. Discs of another width have rims that glare, overexposure or a
   /// grey level of their own moves.
   void scale_of_plain_discs(const calibration::Estimate& width) {
-    constexpr double kErrors = 5, kShare = 1e-3, kClear = 2e-3;
-    if (s_.diameter_stated || !s_.beads->spacing) return;
+    constexpr double kErrors = 5, kShare = 1e-3;
+    if (s_.diameter_stated || !spacing_is_clear()) return;
     const calibration::Estimate& apart = *s_.beads->spacing;
     const double least = std::max(kErrors * std::hypot(width.error, apart.error), kShare * apart.value);
-    if (relative(apart) > kClear || std::abs(width.value - apart.value) <= least) return;
-    scale_ = apart;
-    how_scale_ = fmt::format("distance of touching beads in {} frames; the discs are {} px wide",
-                             s_.beads->frames, value_text(width));
+    if (std::abs(width.value - apart.value) <= least) return;
+    scale_by_spacing(width);
     out_.notes.push_back(fmt::format(
         "the discs are {} +- {} px wide, and touching ones {} +- {} px apart: glare, exposure or their grey "
         "level moves the rims; the distance is taken for the bead diameter",

@@ -36,7 +36,8 @@ double height_of_beads(const TrajectorySource& trajectory, Progress& progress) {
   return std::min(trajectory.info().box.size().z(), top + kHeadroom);
 }
 
-// A trigger error larger than the interval between frames would store frames in the wrong order.
+// A trigger error larger than the interval between frames would store frames in the wrong order, and a longer
+// exposure than that would need paths that the trajectory does not contain.
 void check_times(const TrajectorySource& trajectory, const CameraOptions& options) {
   const std::optional<Drive>& drive = trajectory.info().drive;
   double interval = std::numeric_limits<double>::infinity();

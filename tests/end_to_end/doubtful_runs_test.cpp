@@ -48,6 +48,10 @@ TEST_F(DoubtfulRuns, OtherGravityOrWallsAreNotPooled) {
           "the gravity is 1 there, 0.5 here");
   refused({"analyze", folder_ / "a.h5", folder_ / "open.h5", "--only", "s_b"},
           "the sides are walls there, periodic here");
+  // A ramp: the windows have the Gamma of this gravity too.
+  ASSERT_EQ(simulate("ramp.h5", {"cell.gravity=0.5", "drive.ramp.gamma=1.5"}).code, 0);
+  const Ran windows = run_program({"analyze", folder_ / "ramp.h5", "--window-cycles", "2", "--only", "s_b"});
+  EXPECT_NE(windows.out.find("0.75 to 1.5"), std::string::npos) << windows.out << windows.err;
 }
 
 TEST_F(DoubtfulRuns, TheBedAtRestIsThatOfTheRun) {
