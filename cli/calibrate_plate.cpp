@@ -214,6 +214,7 @@ void compare_with(const calibration::VibrationTable& vibration, CalibrationResul
        {"acceleration", {{"value", v.acceleration}, {"standard_error", v.acceleration_error}}}};
   out.text += fmt::format("accelerometer: {:.6g} +- {:.2g} Hz, amplitude {:.5g} +- {:.2g} m/s^2\n",
                           v.frequency_hz, v.frequency_error, v.acceleration, v.acceleration_error);
+  out.notes.insert(out.notes.end(), v.doubts.begin(), v.doubts.end());
   if (!m.rate) {
     out.notes.emplace_back("without a frame rate (--frame-rate-hz) the accelerometer cannot be compared");
     return;

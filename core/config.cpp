@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -101,9 +102,15 @@ bool ConfigSection::has(const std::string& key) const {
 }
 
 namespace {
-/// "; write 1.5" for the text "1,5", which a decimal comma makes of a number; otherwise empty.
+/// "; a decimal number is written with a point: 1.5" for the text "1,5" and the list [1,5], which a decimal
+/// comma makes of a number; otherwise empty.
 std::string without_decimal_comma(const toml::node& node) {
   std::string text = node.value_exact<std::string>().value_or("");
+  if (const toml::array* list = node.as_array(); list != nullptr && list->size() == 2) {
+    const auto whole = list->get(0)->value_exact<std::int64_t>(),
+               decimals = list->get(1)->value_exact<std::int64_t>();
+    if (whole && decimals && *decimals >= 0) text = fmt::format("{},{}", *whole, *decimals);
+  }
   const std::size_t comma = text.find(',');
   if (comma == std::string::npos || text.find_first_not_of("0123456789,+-eE") != std::string::npos ||
       text.find(',', comma + 1) != std::string::npos)
@@ -293,6 +300,22 @@ void refuse_deep(const std::string& text, const std::string& name) {
   }
 }
 
+/// "; a decimal number is written with a point: 1.5" if the value of the line is such a number with a comma.
+std::string of_decimal_comma(const std::string& text, std::size_t line) {
+  std::size_t begin = 0;
+  for (std::size_t n = 1; n < line && begin != std::string::npos; ++n) {
+    begin = text.find('\n', begin);
+    if (begin != std::string::npos) ++begin;
+  }
+  if (begin == std::string::npos) return {};
+  constexpr std::size_t kLongest = 200;  // the matching recurses with each character
+  const std::string written = text.substr(begin, text.find('\n', begin) - begin);
+  static const std::regex number(R"(^[^=#]*=[ \t]*([+-]?[0-9]+),([0-9]+([eE][+-]?[0-9]+)?)[ \t\r]*(#.*)?$)");
+  std::smatch found;
+  if (written.size() > kLongest || !std::regex_match(written, found, number)) return {};
+  return fmt::format("; a decimal number is written with a point: {}.{}", found.str(1), found.str(2));
+}
+
 }  // namespace
 
 Config Config::from_text(const std::string& text, const std::string& name) {
@@ -308,7 +331,7 @@ Config Config::from_text(const std::string& text, const std::string& name) {
   } catch (const toml::parse_error& e) {
     const auto& at = e.source().begin;
     throw ConfigError({name, static_cast<long>(at.line), static_cast<long>(at.column), ""},
-                      std::string(e.description()) + ".");
+                      std::string(e.description()) + of_decimal_comma(text, at.line) + ".");
   }
   return Config(std::move(shared));
 }
@@ -457,6 +480,9 @@ std::string nearest_key(const std::string& key, const std::vector<std::string>& 
 void Config::refuse_unknown_keys() const {
   walk(shared_->table, "", shared_->asked, [&](const std::string& key, const toml::node& node) {
     const std::string nearest = nearest_key(key, {shared_->asked.begin(), shared_->asked.end()});
+    if (nearest == key)
+      throw ConfigError(shared_->where_of(node, key),
+                        "is a name in quotes, in which a point separates nothing; write it without quotes.");
     throw ConfigError(shared_->where_of(node, key),
                       nearest.empty() ? "there is no such key."
                                       : fmt::format("there is no such key; did you mean '{}'?", nearest));

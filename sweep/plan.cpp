@@ -189,6 +189,11 @@ Plan interpret(const Config& config, const std::string& name, const fs::path& fo
   plan.file = name;
   plan.text = config.text();
   const ConfigSection root = config.root();
+  if (root.has("seeds"))
+    throw ConfigError(
+        root.where("seeds"),
+        "there is no such key; axes.seeds is the number of seeds, seed the number from which they "
+        "are drawn.");
   plan.seed = static_cast<std::uint64_t>(root.integer_in("seed", 0, std::int64_t{1} << 53).value_or(1));
   plan.stop_early = root.boolean("stop_early").value_or(false);
   read_scene_of(plan, root, folder);

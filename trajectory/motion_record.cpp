@@ -305,6 +305,7 @@ MotionRecord read_motion_record(const std::filesystem::path& path, const Scale& 
   Found motion = find(table, kMotions, "the motion", scale, where);
   return {.file = table.file,
           .sha256 = sha256_of(path),
+          .column = motion.column->name,
           .derivative = motion.column->derivative,
           .interval = step_of(time.values, {.file = table.file, .key = time.column->name}),
           .values = std::move(motion.values)};

@@ -17,6 +17,7 @@ namespace twincell {
 struct MotionRecord {
   std::string file;            ///< its path, for messages
   std::string sha256;          ///< of the file, 64 hex digits
+  std::string column;          ///< of the motion
   int derivative = 0;          ///< values are 0: displacements, 1: velocities, 2: accelerations
   double interval = 1;         ///< t0
   std::vector<double> values;  ///< sigma, sigma/t0 or sigma/t0^2

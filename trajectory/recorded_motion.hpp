@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace twincell {
@@ -25,7 +26,8 @@ struct RecordInfo {
   int cycles = 0;    ///< whole cycles of a record that is repeated (after its last sample the first follows);
                      ///< 0: it is not repeated
   std::string file;  ///< name of the file, without its folder
-  std::string sha256;  ///< of the file, 64 hex digits
+  std::string sha256;                    ///< of the file, 64 hex digits
+  std::vector<std::string> doubts = {};  ///< sentences about the record; not stored in files
 };
 
 /// A recorded motion. Between two samples it is the polynomial of degree 5 that has their displacement,
@@ -40,6 +42,8 @@ class RecordedMotion {
   /// t0. A repeated record gives the same bits in every repetition. Less than one interval beyond the ends of
   /// another record its first or last polynomial continues; farther away the plate stays there.
   [[nodiscard]] MotionSample at(std::int64_t cycle, double fraction, double period) const;
+  /// Adds a doubt to info().doubts.
+  void doubt(std::string sentence) { info_.doubts.push_back(std::move(sentence)); }
   /// Number of cycles from the beginning of cycle 0 to the last sample; infinite if the record is repeated.
   [[nodiscard]] double length(double period) const;
   /// The same motion with a larger or smaller stroke.

@@ -94,6 +94,16 @@ class CentreOfMass : public Observable {
       return absent_result(name, "the rest height is neither given nor measured: " + context_.no_rest_height,
                            kSource);
     const double rest = *context_.rest_height;
+    // Shaking compacts a loose bed by a tenth at most; a state far below the height at rest does not exist.
+    constexpr double kLowest = 0.8;
+    if (h.value() < kLowest * rest)
+      return absent_result(
+          name,
+          fmt::format("the rest height, {:.6g} sigma, is {:.3g} times the mean height during the "
+                      "run, {:.4g} sigma; a bed at rest lies no higher: is it in sigma, and of "
+                      "this bed?",
+                      rest, rest / h.value(), h.value()),
+          kSource);
     if (std::isnan(scale))
       return absent_result(name,
                            info_.drive && info_.drive->ramp ? "the drive changes during the run (drive.ramp)"

@@ -11,8 +11,10 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <string_view>
 
+#include "analysis/runs/bed_keys.hpp"
 #include "analysis/runs/phase_diagram.hpp"
 #include "analysis/statistics/statistics.hpp"
 #include "core/constants.hpp"
@@ -291,7 +293,11 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
                       fmt::format("cannot be pooled with {}: {}", a.name(), why));
   };
   std::vector<RunEnds> ends;
-  for (const TrajectorySource* t : trajectories) ends.emplace_back(*t);
+  std::vector<std::map<std::string, std::string>> keys;
+  for (const TrajectorySource* t : trajectories) {
+    ends.emplace_back(*t);
+    keys.push_back(bed_keys(t->info().provenance_json));
+  }
   for (std::size_t i = 1; i < trajectories.size(); ++i) {
     const TrajectorySource &a = *trajectories.front(), &b = *trajectories[i];
     const TrajectoryInfo &p = a.info(), &q = b.info();
@@ -325,6 +331,16 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
     numbers("the number of beads", static_cast<double>(ends[0].first.n_present()),
             static_cast<double>(ends[i].first.n_present()), kSameBeads);
     words("start:", p.conditions.start, q.conditions.start);
+    if (!keys[0].empty() && !keys[i].empty()) {
+      std::set<std::string> named;
+      for (const auto& of_run : {keys[0], keys[i]})
+        for (const auto& [key, value] : of_run) named.insert(key);
+      const auto said = [&](std::size_t run, const std::string& key) {
+        const auto at = keys[run].find(key);
+        return at == keys[run].end() ? std::string("not stated") : at->second;
+      };
+      for (const std::string& key : named) words(key + " is", said(0, key), said(i, key));
+    }
     for (std::size_t k = 0; k < i; ++k)
       if (ends[k].of_same_run(ends[i]))
         refuse(*trajectories[k], b,

@@ -4,10 +4,12 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "calibration/drive/drive_fit.hpp"
 #include "core/error.hpp"
 #include "core/table.hpp"
+#include "trajectory/record_doubts.hpp"
 
 namespace twincell::calibration {
 
@@ -36,11 +38,17 @@ VibrationFit fit_vibration(const VibrationTable& table) {
   } catch (const InputError& e) {
     throw InputError({.file = table.file, .key = "acceleration_m_s2"}, e.what());
   }
+  std::vector<double> in_g = table.acceleration;
+  for (double& a : in_g) a /= kStandardGravity;
+  std::vector<std::string> doubts;
+  for (const std::string& doubt : {doubt_of_clipping(in_g), doubt_of_unit(in_g)})
+    if (!doubt.empty()) doubts.push_back("acceleration_m_s2 of " + table.file + ": " + doubt);
   const double hz = 1 / (2 * std::numbers::pi * step);
   return {.frequency_hz = lock.omega * hz,
           .frequency_error = lock.omega_error * hz,
           .acceleration = lock.amplitude,
-          .acceleration_error = lock.amplitude_error};
+          .acceleration_error = lock.amplitude_error,
+          .doubts = std::move(doubts)};
 }
 
 }  // namespace twincell::calibration

@@ -3,6 +3,7 @@
 /// Frequency and acceleration amplitude of the drive from an accelerometer on the plate.
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace twincell::calibration {
@@ -19,6 +20,7 @@ VibrationTable read_vibration(const std::filesystem::path& file);
 struct VibrationFit {
   double frequency_hz = 0, frequency_error = 0;
   double acceleration = 0, acceleration_error = 0;  ///< m/s^2
+  std::vector<std::string> doubts;                  ///< sentences: cut off by the instrument, another unit
 };
 /// Applies the robust harmonic fit of the plate's heights (drive_fit.hpp) to the accelerations.
 /// \throws InputError naming the file, for fewer than 8 samples, or for times that depart from equal steps by

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "core/constants.hpp"
 #include "core/error.hpp"
 #include "trajectory/motion_record.hpp"
+#include "trajectory/record_doubts.hpp"
 
 namespace twincell::sim {
 
@@ -31,6 +33,17 @@ int cycles_in(const MotionRecord& record, double omega, const Where& where) {
                            "if it has a whole number of cycles (within {:g} %).",
                            record.file, lasts, 100 * kTolerance));
   return static_cast<int>(cycles);
+}
+
+/// A sentence about a Gamma at which no bed is usually shaken, as follows from values in another unit;
+/// otherwise empty.
+std::string doubt_of_strength(double gamma) {
+  constexpr double kWeakest = 0.3, kStrongest = 9;
+  if (gamma >= kWeakest && gamma <= kStrongest) return {};
+  return fmt::format(
+      "Gamma = {:.3g} follows from the values, and beds are usually shaken at {:g} to {:g}; is "
+      "their unit right?",
+      gamma, kWeakest, kStrongest);
 }
 
 /// The cutoff if it can remove noise and keeps the sine of the drive.
@@ -64,6 +77,9 @@ Drive recorded_drive(const DriveRecord& record, DriveSpec spec, double gravity, 
     throw InputError({.file = read.file, .key = {}},
                      fmt::format("has the SHA-256 {}, but drive.file_sha256 is {}: the record has changed.",
                                  read.sha256, record.sha256));
+  const bool scaled = spec.amplitude || spec.gamma || spec.k_m || spec.peak_velocity;
+  std::vector<std::string> doubts = {doubt_of_clipping(read.values)};
+  if (read.derivative == 2 && !scaled) doubts.push_back(doubt_of_unit(read.values));
   int cycles = 0;
   if (record.repeats) {
     cycles = cycles_in(read, omega, drive.where("repeat"));
@@ -74,8 +90,7 @@ Drive recorded_drive(const DriveRecord& record, DriveSpec spec, double gravity, 
   }
   if (record.cutoff > 0)
     read = smoothed(read, admitted(record.cutoff, omega, read, drive.where("cutoff")), record.repeats);
-  const FittedMotion fit = fit_motion(read, omega, cycles);
-  const bool scaled = spec.amplitude || spec.gamma || spec.k_m || spec.peak_velocity;
+  FittedMotion fit = fit_motion(read, omega, cycles);
   if (!scaled) spec.amplitude = fit.amplitude;
   Drive solved = solve_drive(spec, gravity, drive.where(""), axis);
   if (scaled && !(fit.amplitude > 0))
@@ -83,8 +98,12 @@ Drive recorded_drive(const DriveRecord& record, DriveSpec spec, double gravity, 
         drive.where("file"),
         fmt::format("{} has no motion at the stated frequency that could be scaled to A = {:g} sigma.",
                     read.file, solved.amplitude));
+  if (!scaled && gravity > 0) doubts.push_back(doubt_of_strength(solved.gamma()));
+  for (const std::string& doubt : doubts)
+    if (!doubt.empty())
+      fit.motion.doubt(fmt::format("{} of {}: {}", read.column, fit.motion.info().file, doubt));
   solved.recorded = std::make_shared<RecordedMotion>(
-      scaled ? fit.motion.scaled(solved.amplitude / fit.amplitude) : fit.motion);
+      scaled ? fit.motion.scaled(solved.amplitude / fit.amplitude) : std::move(fit.motion));
   return solved;
 }
 
@@ -151,8 +170,8 @@ std::string beyond_the_sine(const Drive& drive, double gravity) {
 }
 
 std::vector<std::string> warnings_of_record(const Drive& drive) {
-  std::vector<std::string> all;
-  if (!drive.recorded) return all;
+  if (!drive.recorded) return {};
+  std::vector<std::string> all = drive.recorded->info().doubts;
   constexpr double kHardlyASine = 0.5, kNoisy = 10;
   const std::string& name = drive.recorded->info().file;
   if (const double share = share_of_sine(drive); share < kHardlyASine) {

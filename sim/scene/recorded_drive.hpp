@@ -45,7 +45,8 @@ void require_record_lasts(const Drive& drive, std::int64_t cycles, const Where& 
 /// magnitude of g; 0: none
 std::string beyond_the_sine(const Drive& drive, double gravity);
 
-/// Doubts about the record of a drive, if it has one: hardly a sine, or noisy.
+/// Doubts about the record of a drive, if it has one: cut off by the instrument, of a strength or a mean that
+/// suggest another unit, hardly a sine, or noisy.
 std::vector<std::string> warnings_of_record(const Drive& drive);
 
 }  // namespace twincell::sim

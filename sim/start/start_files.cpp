@@ -4,13 +4,16 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/table_text.hpp"
 #include "sim/start/start.hpp"
 #include "sim/start/start_parts.hpp"
 #include "trajectory/formats/h5md_file.hpp"
+#include "trajectory/unit_keys.hpp"
 
 namespace twincell::sim {
 
@@ -146,23 +149,36 @@ Start from_trajectory(const Scene& scene, Progress& progress) {
 
 namespace {
 
-struct Column {
-  std::string_view name;
+/// A quantity of a bead and the columns that contain it: in reduced units (`plain`, `reduced`) or in
+/// laboratory units. Where the scene has a laboratory scale, the unit must be in the name.
+struct Quantity {
+  std::string_view plain, reduced, physical;
+  Unit unit;  ///< of `physical`
   double Bead::*member;
   bool space_only = false;  ///< for 3D only
   bool positive = false;
+  double per_member = 1;  ///< 2 for a diameter, which is two radii
 };
-constexpr Column kColumns[] = {{"x", &Bead::x},
-                               {"y", &Bead::y, true},
-                               {"z", &Bead::z},
-                               {"vx", &Bead::vx},
-                               {"vy", &Bead::vy, true},
-                               {"vz", &Bead::vz},
-                               {"spin", &Bead::spin},
-                               {"spin_x", &Bead::spin_x, true},
-                               {"spin_z", &Bead::spin_z, true},
-                               {"radius", &Bead::radius, false, true},
-                               {"mass", &Bead::mass, false, true}};
+constexpr Quantity kQuantities[] = {
+    {"x", "x_sigma", "x_mm", Unit::length_mm, &Bead::x},
+    {"y", "y_sigma", "y_mm", Unit::length_mm, &Bead::y, true},
+    {"z", "z_sigma", "z_mm", Unit::length_mm, &Bead::z},
+    {"vx", "vx_v0", "vx_mm_s", Unit::velocity_mm_s, &Bead::vx},
+    {"vy", "vy_v0", "vy_mm_s", Unit::velocity_mm_s, &Bead::vy, true},
+    {"vz", "vz_v0", "vz_mm_s", Unit::velocity_mm_s, &Bead::vz},
+    {"spin", "spin_per_t0", "spin_rad_s", Unit::rate_per_s, &Bead::spin},
+    {"spin_x", "spin_x_per_t0", "spin_x_rad_s", Unit::rate_per_s, &Bead::spin_x, true},
+    {"spin_z", "spin_z_per_t0", "spin_z_rad_s", Unit::rate_per_s, &Bead::spin_z, true},
+    {"radius", "radius_sigma", "radius_mm", Unit::length_mm, &Bead::radius, false, true},
+    {"diameter", "diameter_sigma", "diameter_mm", Unit::length_mm, &Bead::radius, false, true, 2},
+    {"mass", "", "", Unit::one, &Bead::mass, false, true}};
+
+/// A column of the table.
+struct Column {
+  const Quantity* quantity;
+  std::string name;  ///< as written
+  bool physical;     ///< in laboratory units
+};
 
 /// A field of a CSV line and the column where it begins, counted from 1.
 struct Field {
@@ -189,19 +205,26 @@ class BeadTable {
   BeadTable(const Scene& scene, const std::vector<Field>& header, long line) : scene_(scene) {
     for (const Field& f : header) {
       const Where where{scene.from.string(), line, f.column, std::string(f.text)};
-      const auto known = std::find_if(std::begin(kColumns), std::end(kColumns),
-                                      [&](const Column& c) { return c.name == f.text; });
-      if (known == std::end(kColumns))
-        throw InputError(
-            where,
-            "there is no such column; a bead has x, y, z, vx, vy, vz, spin, spin_x, spin_z, radius, mass.");
+      const auto known = std::find_if(std::begin(kQuantities), std::end(kQuantities), [&](const Quantity& q) {
+        return f.text == q.plain || (!f.text.empty() && (f.text == q.reduced || f.text == q.physical));
+      });
+      if (known == std::end(kQuantities))
+        throw InputError(where,
+                         "there is no such column; a bead has x, y, z, vx, vy, vz, spin, spin_x, spin_z, "
+                         "radius or diameter, mass; with units x_mm, vx_mm_s, spin_rad_s, radius_mm.");
       if (known->space_only && scene.dimension == 2)
         throw InputError(where, "beads of a 2D cell have no such column.");
-      if (has(known->name)) throw InputError(where, "the column occurs twice.");
-      columns_.push_back(known);
+      if (has(known->member)) throw InputError(where, "the column occurs twice.");
+      if (f.text == known->plain && !known->physical.empty() && scene.scale.sigma_m)
+        throw InputError(where, fmt::format("has no unit although the scene has a laboratory scale; write {} "
+                                            "for reduced units or {} for laboratory units.",
+                                            known->reduced, known->physical));
+      const bool physical = f.text == known->physical;
+      if (physical) (void)reduced_quantity(1, known->unit, scene.scale, where);  // the scale has all it needs
+      columns_.push_back({known, std::string(f.text), physical});
     }
-    for (const char* needed : {"x", "z"})
-      if (!has(needed)) throw InputError({scene.from.string(), line, 0, needed}, "the column is missing.");
+    for (const auto& [name, member] : {std::pair{"x", &Bead::x}, std::pair{"z", &Bead::z}})
+      if (!has(member)) throw InputError({scene.from.string(), line, 0, name}, "the column is missing.");
   }
 
   [[nodiscard]] Bead row(const std::vector<Field>& fields, long line) const {
@@ -210,29 +233,32 @@ class BeadTable {
                        fmt::format("{} columns are needed, {} were found.", columns_.size(), fields.size()));
     Bead b = bead_at(scene_, scene_.radius, Vec3(0, scene_.dimension == 3 ? scene_.depth / 2 : 0, 0));
     for (std::size_t k = 0; k < fields.size(); ++k)
-      b.*columns_[k]->member = number(fields[k], *columns_[k], line);
-    if (!has("mass")) b.mass = scene_.mass_of(b.radius);
+      b.*columns_[k].quantity->member = number(fields[k], columns_[k], line);
+    if (!has(&Bead::mass)) b.mass = scene_.mass_of(b.radius);
     b.inertia = scene_.inertia_factor * b.mass * b.radius * b.radius;
     return b;
   }
 
  private:
-  [[nodiscard]] bool has(std::string_view name) const {
-    return std::any_of(columns_.begin(), columns_.end(), [&](const Column* c) { return c->name == name; });
+  [[nodiscard]] bool has(double Bead::*member) const {
+    return std::any_of(columns_.begin(), columns_.end(),
+                       [&](const Column& c) { return c.quantity->member == member; });
   }
+  /// The number of a field in reduced units.
   [[nodiscard]] double number(const Field& f, const Column& column, long line) const {
-    const Where where{scene_.from.string(), line, f.column, std::string(column.name)};
+    const Where where{scene_.from.string(), line, f.column, column.name};
     double value = 0;
     const auto [end, error] = std::from_chars(f.text.data(), f.text.data() + f.text.size(), value);
     if (error != std::errc() || end != f.text.data() + f.text.size() || !std::isfinite(value))
       throw InputError(where, fmt::format("a finite number is needed, not '{}'.", f.text));
-    if (column.positive && !(value > 0))
+    if (column.quantity->positive && !(value > 0))
       throw InputError(where, fmt::format("{} is out of range; the value must be greater than 0.", value));
-    return value;
+    const Unit unit = column.physical ? column.quantity->unit : Unit::one;
+    return reduced_quantity(value, unit, scene_.scale, where) / column.quantity->per_member;
   }
 
   const Scene& scene_;
-  std::vector<const Column*> columns_;
+  std::vector<Column> columns_;
 };
 
 }  // namespace

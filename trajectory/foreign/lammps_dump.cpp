@@ -18,21 +18,21 @@ namespace twincell {
 
 namespace {
 
-constexpr int kAbsent = -1;
+constexpr int kNoColumn = -1;
 
 /// Column and convention of one coordinate.
 struct Coordinate {
-  int column = kAbsent;
+  int column = kNoColumn;
   bool scaled = false, wrapped = false;
-  int image = kAbsent;  ///< column of ix, iy or iz
+  int image = kNoColumn;  ///< column of ix, iy or iz
 };
 
 struct ColumnPlaces {
   std::size_t count = 0;
-  int id = kAbsent, type = kAbsent, radius = kAbsent, mass = kAbsent;
+  int id = kNoColumn, type = kNoColumn, radius = kNoColumn, mass = kNoColumn;
   bool is_diameter = false;
   std::array<Coordinate, 3> position;
-  std::array<int, 3> velocity{kAbsent, kAbsent, kAbsent}, spin{kAbsent, kAbsent, kAbsent};
+  std::array<int, 3> velocity{kNoColumn, kNoColumn, kNoColumn}, spin{kNoColumn, kNoColumn, kNoColumn};
 };
 
 /// Columns and ids may be in any order. Required are `id` and per axis one of xu, xsu, x, xs (s: scaled by
@@ -138,15 +138,15 @@ class DumpReader final : public SnapshotReader {
         fail(fmt::format("the column '{}' occurs twice.", word));
     const auto place = [&](const std::string& name) {
       const auto found = at.find(name);
-      return found == at.end() ? kAbsent : found->second;
+      return found == at.end() ? kNoColumn : found->second;
     };
     columns_.count = words_.size();
     columns_.id = place("id");
-    if (columns_.id == kAbsent) fail("there is no column 'id', without which beads cannot be identified.");
+    if (columns_.id == kNoColumn) fail("there is no column 'id', without which beads cannot be identified.");
     columns_.type = place("type");
     columns_.mass = place("mass");
     columns_.radius = place("radius");
-    if (columns_.radius == kAbsent) {
+    if (columns_.radius == kNoColumn) {
       columns_.radius = place("diameter");
       columns_.is_diameter = true;
     }
@@ -158,17 +158,17 @@ class DumpReader final : public SnapshotReader {
       for (const Coordinate c :
            {Coordinate{place(axis + "u"), false, false}, Coordinate{place(axis + "su"), true, false},
             Coordinate{place(axis), false, true}, Coordinate{place(axis + "s"), true, true}})
-        if (c.column != kAbsent && columns_.position[k].column == kAbsent) columns_.position[k] = c;
+        if (c.column != kNoColumn && columns_.position[k].column == kNoColumn) columns_.position[k] = c;
       if (columns_.position[k].wrapped) columns_.position[k].image = place("i" + axis);
-      if (columns_.position[k].column == kAbsent && k < 2)
+      if (columns_.position[k].column == kNoColumn && k < 2)
         fail(fmt::format("there is no column for the positions along {0} ({0}, {0}u, {0}s or {0}su).", axis));
-      has_.velocity[k] = columns_.velocity[k] != kAbsent;
-      has_.spin[k] = columns_.spin[k] != kAbsent;
-      has_.wrapped[k] = columns_.position[k].wrapped && columns_.position[k].image == kAbsent;
+      has_.velocity[k] = columns_.velocity[k] != kNoColumn;
+      has_.spin[k] = columns_.spin[k] != kNoColumn;
+      has_.wrapped[k] = columns_.position[k].wrapped && columns_.position[k].image == kNoColumn;
     }
-    has_.type = columns_.type != kAbsent;
-    has_.radius = columns_.radius != kAbsent;
-    has_.mass = columns_.mass != kAbsent;
+    has_.type = columns_.type != kNoColumn;
+    has_.radius = columns_.radius != kNoColumn;
+    has_.mass = columns_.mass != kNoColumn;
   }
 
   void read_atoms(std::size_t announced, Snapshot& s) {
@@ -181,12 +181,12 @@ class DumpReader final : public SnapshotReader {
       SnapshotBead a;
       a.line = in_.number();
       a.id = whole(at(columns_.id));
-      if (columns_.type != kAbsent) a.type = static_cast<long>(whole(at(columns_.type)));
-      if (columns_.radius != kAbsent) {
+      if (columns_.type != kNoColumn) a.type = static_cast<long>(whole(at(columns_.type)));
+      if (columns_.radius != kNoColumn) {
         a.radius = number(at(columns_.radius)) / (columns_.is_diameter ? 2 : 1);
         if (!(a.radius > 0)) fail("a bead has no size.");
       }
-      if (columns_.mass != kAbsent) {
+      if (columns_.mass != kNoColumn) {
         a.mass = number(at(columns_.mass));
         if (!(a.mass > 0)) fail("a bead has no mass.");
       }
@@ -194,11 +194,11 @@ class DumpReader final : public SnapshotReader {
         const int axis = static_cast<int>(k);
         const Coordinate& c = columns_.position[k];
         const double length = s.upper[axis] - s.lower[axis];
-        a.position[axis] = c.column == kAbsent ? 0 : number(at(c.column));
+        a.position[axis] = c.column == kNoColumn ? 0 : number(at(c.column));
         if (c.scaled) a.position[axis] = s.lower[axis] + a.position[axis] * length;
-        if (c.image != kAbsent) a.position[axis] += static_cast<double>(whole(at(c.image))) * length;
-        if (columns_.velocity[k] != kAbsent) a.velocity[axis] = number(at(columns_.velocity[k]));
-        if (columns_.spin[k] != kAbsent) a.spin[axis] = number(at(columns_.spin[k]));
+        if (c.image != kNoColumn) a.position[axis] += static_cast<double>(whole(at(c.image))) * length;
+        if (columns_.velocity[k] != kNoColumn) a.velocity[axis] = number(at(columns_.velocity[k]));
+        if (columns_.spin[k] != kNoColumn) a.spin[axis] = number(at(columns_.spin[k]));
       }
       s.beads.push_back(a);
     }

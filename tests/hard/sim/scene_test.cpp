@@ -529,7 +529,7 @@ std::string record_of(int cycles, Value value) {
   std::string text = "time_t0,position_sigma\n";
   for (int i = 0; i < 40 * cycles; ++i) {
     const double t = 2 * std::numbers::pi * i / 40;
-    text += fmt::format("{:.15g},{:.15g}\n", t, 2 * std::sin(t) + value(t));
+    text += fmt::format("{:.12g},{:.12g}\n", t, 2 * std::sin(t) + value(t));
   }
   return text;
 }
@@ -611,6 +611,19 @@ TEST(DriveOfAScene, Recorded) {
                                [&](const std::string& w) { return w.find(words) != std::string::npos; });
   };
   EXPECT_FALSE(warned("trace.csv"));
+  put(record_of(5, [](double t) { return 18 * std::sin(t); }));
+  EXPECT_TRUE(
+      warned("position_sigma of trace.csv: Gamma = 20 follows from the values, and beds are usually "
+             "shaken at 0.3 to 9; is their unit right?"));
+  put(record_of(5, [](double t) { return std::clamp(2 * std::sin(t), -1.5, 1.5) - 2 * std::sin(t); }));
+  EXPECT_TRUE(
+      warned("position_sigma of trace.csv: 45 % of the values are exactly the largest or the smallest"));
+  // Accelerations of 1.6 g in m/s^2, at an instrument that senses gravity, named g.
+  std::string text = record_of(5, [](double t) { return 9.81 + 13.7 * std::sin(t); });
+  text.replace(text.find("position_sigma"), std::string("position_sigma").size(), "acceleration_g");
+  put(text);
+  EXPECT_TRUE(warned("acceleration_g of trace.csv: their mean is 9.8"));
+  EXPECT_TRUE(warned("acceleration_g of trace.csv: Gamma = 15.7 follows from the values"));
   put(record_of(5, [](double t) { return 6 * std::cos(3 * t); }));
   EXPECT_TRUE(warned("has only 10 % of the mean square of trace.csv"));
   put(record_of(5, [](double t) { return 0.2 * std::cos(18 * t); }));

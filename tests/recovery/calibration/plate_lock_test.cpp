@@ -191,6 +191,15 @@ TEST(DriveFit, AnAccelerometerIsFittedTheSameWay) {
   const VibrationFit v = fit_vibration(t);
   EXPECT_NEAR(v.frequency_hz, 23.4, 1e-6);
   EXPECT_NEAR(v.acceleration, 25, 1e-6);
+  EXPECT_TRUE(v.doubts.empty());
+  VibrationTable overloaded = t;
+  for (double& a : overloaded.acceleration) a = std::clamp(a, -20.0, 20.0);
+  const std::vector<std::string> doubts = fit_vibration(overloaded).doubts;
+  ASSERT_EQ(doubts.size(), 1U);
+  const std::string begins = "acceleration_m_s2 of a.csv: ";
+  ASSERT_TRUE(doubts[0].starts_with(begins)) << doubts[0];
+  // 2 arccos(0.8)/pi = 41 % of a sine
+  EXPECT_NEAR(std::stod(doubts[0].substr(begins.size())), 41, 2) << doubts[0];
   expect_refusal<InputError>(
       [] {
         (void)fit_vibration({.file = "a.csv", .time_s = {0, 1}, .acceleration = {1, 2}});

@@ -5,11 +5,13 @@
 
 #include <cmath>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "analysis/observable/results.hpp"
 #include "core/error.hpp"
 #include "core/json_view.hpp"
+#include "tests/support/complaint.hpp"
 #include "tests/support/validation.hpp"
 
 namespace twincell::analysis {
@@ -153,6 +155,41 @@ TEST(Pooling, OtherConditionsAreRefused) {
     EXPECT_NE(std::string(e.what()).find("Gamma is 1.5 there, 2 here"), std::string::npos) << e.what();
   }
   EXPECT_THROW(require_one_condition({&a, &b, &a}), ConfigError);  // the same run twice
+}
+
+TEST(Pooling, OtherContactLawsAreRefused) {
+  const auto with_scene = [](MemoryTrajectory run, const std::string& scene) {
+    run.info().provenance_json = nlohmann::json{{"config", scene}}.dump();
+    return run;
+  };
+  const std::string scene =
+      "preset = 'p'\n\n[beads]\ncount = 4\n\n[cell]\nwidth_sigma = 20.0\n\n[contact]\nk_n = 1000000.0\n"
+      "mu = 0.59999999999999998\n\n"
+      "[start]\nseed = 1\n";
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    std::string text = scene;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  const MemoryTrajectory first = with_scene(bed(1.5, 0), scene);
+  const auto complaint = [&](const std::string& other) {
+    const MemoryTrajectory second = with_scene(bed(1.5, 0.1), other);
+    return complaint_of([&] { require_one_condition({&first, &second}); });
+  };
+  EXPECT_NE(complaint(changed("0.59999999999999998", "0.1")).find("contact.mu is 0.6 there, 0.1 here"),
+            std::string::npos);
+  EXPECT_NE(
+      complaint(changed("mu = 0.59999999999999998\n", "")).find("contact.mu is 0.6 there, not stated here"),
+      std::string::npos);
+  EXPECT_NE(complaint(changed("count = 4", "count = 4\nspread = [\n  [1.0, 0.5],\n  [2.0, 0.5]\n]"))
+                .find("beads.spread is not stated there, [  [1.0, 0.5],  [2.0, 0.5]] here"),
+            std::string::npos);
+  // Chance, and what the trajectories themselves state.
+  for (const std::string& same :
+       {scene, changed("seed = 1", "seed = 2"), changed("count = 4", "count = 5"), changed("20.0", "20.1")})
+    EXPECT_EQ(complaint(same), "");
+  // A run without a scene, as of a camera, has no contact law that could differ.
+  const MemoryTrajectory unknown = bed(1.5, 0.1);
+  EXPECT_NO_THROW(require_one_condition({&first, &unknown}));
 }
 
 TEST(Results, ComeBackFromJson) {

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "core/atomic_file.hpp"
+#include "tests/support/complaint.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace twincell {
@@ -44,6 +45,24 @@ TEST(Config, NumbersOfAListAreFinite) {
   EXPECT_TRUE(config.root().is_list("good"));
   EXPECT_FALSE(config.root().is_list("one"));
   EXPECT_FALSE(config.root().is_list("absent"));
+}
+
+TEST(Config, ADecimalCommaIsNamed) {
+  const auto said = [](const std::string& line) -> std::string {
+    try {
+      (void)Config::from_text("[a]\n" + line + "\n", "f.toml").root().section("a").number("key");
+    } catch (const ConfigError& e) {
+      return e.what();
+    }
+    return "accepted";
+  };
+  constexpr const char* kHint = "; a decimal number is written with a point: -1.5.";
+  for (const char* line : {"key = -1,5", "key = -1,5  # g", "key = \"-1,5\"", "key = [-1,5]", "\tkey=-1,5"})
+    EXPECT_TRUE(said(line).ends_with(kHint)) << line << ": " << said(line);
+  for (const char* line :
+       {"key = 1,", "key = -1,5,2", "key = \"-1,5", "key = [-1,-5]", "key = -1,5 m", "key # = -1,5"})
+    EXPECT_EQ(said(line).find("with a point"), std::string::npos) << line << ": " << said(line);
+  EXPECT_NE(said("key = 1,5" + std::string(1000000, ' ')), "accepted");
 }
 
 TEST(Config, AKeyStandsInItsTable) {
@@ -132,7 +151,8 @@ TEST(Config, KeysAreGivenOnceAndByTheirOwnName) {
   EXPECT_NE(refusal("[a]\nb = 1\n[a]\nc = 2\n").find("f.toml:3"), std::string::npos);
   const Config quoted = Config::from_text("\"a.b\" = 1\n", "f.toml");
   static_cast<void>(quoted.root().section("a").number("b"));
-  EXPECT_THROW(quoted.refuse_unknown_keys(), ConfigError);
+  expect_refusal<ConfigError>([&] { quoted.refuse_unknown_keys(); },
+                              "f.toml:1:9: a.b: is a name in quotes, in which a point separates nothing");
 }
 
 }  // namespace

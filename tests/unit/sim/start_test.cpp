@@ -545,6 +545,34 @@ TEST(BeadTable, HoldsWhatItNames) {
   EXPECT_EQ(make_start(table.scene_of("x,z\n")).beads.size(), 0U);
 }
 
+// 2 mm and 9.81 m/s^2: v0 = 140.07 mm/s, t0 = 14.278 ms.
+TEST(BeadTable, UnitsStandInTheNames) {
+  Table table;
+  const std::vector<std::string> in_cell = {"scale.sigma_mm=2.0", "scale.gravity_m_s2=9.81"};
+  const auto beads =
+      make_start(
+          table.scene_of("x_mm,z_sigma,vx_mm_s,vz_v0,spin_rad_s,diameter_mm\n6,1.5,140.071,0.25,70.036,4\n",
+                         kFlat, in_cell))
+          .beads;
+  ASSERT_EQ(beads.size(), 1U);
+  const Bead& b = beads[0];
+  EXPECT_DOUBLE_EQ(b.x, 3);
+  EXPECT_EQ(b.z, 1.5);
+  EXPECT_NEAR(b.vx, 1, 1e-5);
+  EXPECT_EQ(b.vz, 0.25);
+  EXPECT_NEAR(b.spin, 1, 1e-4);
+  EXPECT_DOUBLE_EQ(b.radius, 1);
+  EXPECT_DOUBLE_EQ(b.mass, 4);
+  expect_says(complaint([&] { make_start(table.scene_of("z,x_mm\n1,2\n", kFlat, in_cell)); }),
+              table.file +
+                  ":1:1: z: has no unit although the scene has a laboratory scale; write z_sigma for "
+                  "reduced units or z_mm for laboratory units.");
+  expect_says(complaint([&] { make_start(table.scene_of("x,z_mm\n1,2\n")); }),
+              table.file + ":1:3: z_mm: is 1 in laboratory units, which need scale.sigma_mm");
+  expect_says(complaint([&] { make_start(table.scene_of("x,z,radius,diameter\n1,2,1,2\n")); }),
+              ":1:12: diameter: the column occurs twice");
+}
+
 TEST(BeadTable, BadRowsAreNamed) {
   Table table;
   const auto expect_refused = [&](const std::string& text, const std::string& wanted) {

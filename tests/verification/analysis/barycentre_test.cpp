@@ -24,6 +24,12 @@ TEST(CentreOfMass, OfTheBouncingRigidBed) {
   test::validate({"V5.16", "delta h_cm of the rigid bed at Gamma 1.5", lift, 1e-12, "closed form"},
                  find_result(results, "delta_h_cm").value());
   EXPECT_NEAR(find_result(results, "delta_h_bar").value(), lift / 2.25, 1e-12);
+  // No bed lies higher at rest than it flies; 2.4 times the height, as of millimetres, is refused.
+  EXPECT_NE(find_result(analyze(test::rigid_bed(bed), {.rest_height = 2.4 * rest}), "delta_h_cm")
+                .absent.find("a bed at rest lies no higher: is it in sigma, and of this bed?"),
+            std::string::npos);
+  EXPECT_TRUE(
+      find_result(analyze(test::rigid_bed(bed), {.rest_height = 1.1 * rest}), "delta_h_cm").present());
   const Result& by_phase = find_result(results, "h_cm_k");
   ASSERT_EQ(by_phase.values.size(), 40U);
   const double phi = 2 * std::numbers::pi * 10 / 40;

@@ -1,0 +1,60 @@
+#include "analysis/runs/bed_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+
+namespace twincell::analysis {
+
+namespace {
+
+bool is_of_the_bed(std::string_view key) {
+  constexpr std::array<std::string_view, 3> kTables = {"contact.", "beads.", "cell."};
+  constexpr std::array<std::string_view, 5> kElsewhere = {"beads.count", "beads.layers", "cell.width",
+                                                          "cell.depth", "cell.height"};
+  return std::ranges::any_of(kTables, [&](std::string_view table) { return key.starts_with(table); }) &&
+         std::ranges::none_of(kElsewhere, [&](std::string_view other) {
+           return key == other || (key.starts_with(other) && key[other.size()] == '_');
+         });
+}
+
+}  // namespace
+
+std::map<std::string, std::string> bed_keys(const std::string& provenance_json) {
+  const auto provenance = nlohmann::json::parse(provenance_json, nullptr, false);
+  if (!provenance.is_object()) return {};
+  const auto config = provenance.find("config");
+  if (config == provenance.end() || !config->is_string()) return {};
+  // The text was written by this program: one key a line below its table, long lists on several lines.
+  std::map<std::string, std::string> all;
+  std::istringstream lines(config->get<std::string>());
+  std::string table, key;
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t equals = line.find(" = ");
+    if (line.starts_with('[') && line.ends_with(']')) {
+      table = line.substr(1, line.size() - 2) + '.';
+      key.clear();
+    } else if (equals != std::string::npos && line.find_first_of("[{'\" ") >= equals) {
+      key = table + line.substr(0, equals);
+      if (is_of_the_bed(key)) all[key] = line.substr(equals + 3);
+    } else if (const auto begun = all.find(key); begun != all.end()) {
+      begun->second += line;
+    }
+  }
+  for (auto& [name, value] : all) {  // 0.6 instead of 0.59999999999999998
+    double number = 0;
+    const char* end = value.data() + value.size();
+    if (const auto read = std::from_chars(value.data(), end, number);
+        read.ec == std::errc() && read.ptr == end)
+      value = fmt::format("{}", number);
+  }
+  return all;
+}
+
+}  // namespace twincell::analysis
