@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "cli/import_doubts.hpp"
+#include "cli/named_columns.hpp"
 #include "cli/output.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
@@ -61,13 +62,7 @@ void run(ImportOptions& o, const Common& common) {
   for (std::size_t k = 0; k < o.origin.size(); ++k) o.foreign.origin[static_cast<int>(k)] = o.origin[k];
   const ForeignFormat& format =
       o.format.empty() ? format_of_file(o.file) : foreign_format(o.format, "--format");
-  for (const std::string& pair : o.columns) {
-    const std::size_t equals = pair.find('=');
-    if (equals == std::string::npos || equals == 0 || equals + 1 == pair.size())
-      throw ConfigError({"", 0, 0, "--columns"}, fmt::format("'{}' is not QUANTITY=NAME.", pair));
-    if (!o.foreign.table_columns.emplace(pair.substr(0, equals), pair.substr(equals + 1)).second)
-      throw ConfigError({"", 0, 0, "--columns"}, fmt::format("'{}' is named twice.", pair.substr(0, equals)));
-  }
+  o.foreign.table_columns = named_columns(o.columns);
   const bool is_table = format.word == std::string_view("csv");
   if (!is_table && (!o.columns.empty() || o.foreign.y_up))
     throw ConfigError({"", 0, 0, o.foreign.y_up ? "--y-up" : "--columns"},

@@ -8,9 +8,11 @@
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "calibration/drive/track_film.hpp"
 #include "cli/locating_options.hpp"
+#include "cli/named_columns.hpp"
 #include "cli/numbers.hpp"
 #include "cli/output.hpp"
 #include "cli/phase_options.hpp"
@@ -21,6 +23,7 @@
 #include "core/atomic_file.hpp"
 #include "core/counted.hpp"
 #include "core/error.hpp"
+#include "core/table.hpp"
 #include "imaging/benchmark/score.hpp"
 #include "imaging/cell/implausible.hpp"
 #include "imaging/stack/open_frames.hpp"
@@ -35,6 +38,8 @@ struct TrackOptions {
   std::string stack, output, csv;
   TruthOptions truth;
   calibration::FilmOptions film;
+  std::vector<std::string> columns;  ///< of a table, QUANTITY=NAME
+  std::vector<int> picture;          ///< width and height, px, of the frames of a table
   bool profile = false;
 };
 
@@ -105,6 +110,18 @@ std::string describe(const imaging::TrackedStack& stack) {
   return text;
 }
 
+/// Links the beads of a table.
+calibration::TrackedFilm track_beads_of_table(const TrackOptions& o, const Common& common, std::string& doubt,
+                                              imaging::FrameRange& range, StageTimes* times) {
+  imaging::LocatedTableOptions options{.columns = named_columns(o.columns)};
+  if (!o.picture.empty()) options.picture = {o.picture[0], o.picture[1]};
+  const auto progress = [&](const std::string& stage) -> std::unique_ptr<Progress> {
+    return std::make_unique<ProgressBar>(common, stage);
+  };
+  return calibration::track_table(read_table(o.stack), std::move(options), o.film, progress, doubt, range,
+                                  times);
+}
+
 void run(TrackOptions& o, const Common& common) {
   Profile profile(o.profile);
   (void)imaging::Scorer(o.truth.rows());  // refuse rows in the wrong order before the work
@@ -114,12 +131,21 @@ void run(TrackOptions& o, const Common& common) {
   const auto open = [&](const imaging::LocatorOptions& locator) {
     return open_for_locating(o.stack, o.film.locating, locator, common);
   };
-  calibration::TrackedFilm film = calibration::track_film(
-      open, o.stack, o.film,
-      [&](const std::string& stage) -> std::unique_ptr<Progress> {
-        return std::make_unique<ProgressBar>(common, stage);
-      },
-      profile.times());
+  const bool of_table = imaging::is_located_table(o.stack);
+  for (const auto& [given, option] :
+       {std::pair(!o.columns.empty(), "--columns"), {!o.picture.empty(), "--picture-size"}})
+    if (given && !of_table)
+      throw ConfigError({.file = {}, .key = option}, "applies to a table of located beads (.csv).");
+  imaging::FrameRange range = imaging::frames_of(o.film.locating);
+  std::string doubt_of_table;
+  calibration::TrackedFilm film =
+      of_table ? track_beads_of_table(o, common, doubt_of_table, range, profile.times())
+               : calibration::track_film(
+                     open, o.stack, o.film,
+                     [&](const std::string& stage) -> std::unique_ptr<Progress> {
+                       return std::make_unique<ProgressBar>(common, stage);
+                     },
+                     profile.times());
   const imaging::CellDescription& cell = film.cell;
   const imaging::TrackedStack& stack = film.stack;
   imaging::TrackPlan& plan = film.plan;
@@ -129,13 +155,18 @@ void run(TrackOptions& o, const Common& common) {
                      cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
   for (const std::string& doubt : imaging::implausible_numbers(imaging::shaken_cell(cell)))
     note(common, doubt);
+  if (!doubt_of_table.empty()) note(common, doubt_of_table + ".");
+  if (of_table && range.first > 0 && stack.phases.locked())
+    note(common,
+         fmt::format("the first frame of {} has the number {}; its phase is {}, as frames count from 0 and "
+                     "--first-phase is that of frame 0.",
+                     o.stack, range.first, stack.phases.at(0).phase));
   if (!film.check.disagreement.empty())
     note(common,
          "the stated drive does not fit the film: " + film.check.disagreement + " (--trust-stated-drive).");
   if (!stack.phases.warning.empty()) note(common, stack.phases.warning + ".");
   if (const std::string missing = stack.missing_beads(); !missing.empty()) note(common, missing + ".");
   if (const std::string doubt = stack.scale_doubt(cell); !doubt.empty()) note(common, doubt + ".");
-  const imaging::FrameRange range = imaging::frames_of(o.film.locating);
   // Write the trajectory, then the table.
   Provenance provenance = common.provenance();
   provenance.config = cell.text;
@@ -207,8 +238,10 @@ void add_track(CLI::App& program, Common& common) {
                             "Locate the beads in every frame of a stack, determine the drive phases, and "
                             "link the beads into tracks. Writes a trajectory.",
                             "twincell track frames/ -o exp.h5 --cell CELL.toml");
-  verb.add_option("stack", o->stack,
-                  "Stack: folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
+  verb.add_option(
+          "stack", o->stack,
+          "Stack: folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md); or a table of "
+          "located beads (.csv) with columns frame, x, y (docs/tracking.md)")
       ->required();
   writes(common, verb,
          verb.add_option("-o,--output", o->output, "Trajectory file to write (H5MD)")->required(),
@@ -260,6 +293,16 @@ void add_track(CLI::App& program, Common& common) {
   writes(common, verb,
          verb.add_option("--csv", o->csv, "Table of tracks to write (CSV, trackpy's columns and more)"),
          Product::table(kHeading));
+  verb.add_option(
+          "--columns", o->columns,
+          "Of a table: names of columns that are called otherwise, as QUANTITY=NAME: frame, x, y, radius, "
+          "diameter, sigma_x, sigma_y, tracer")
+      ->option_text("QUANTITY=NAME ...");
+  verb.add_option(
+          "--picture-size", o->picture,
+          "Of a table: width and height of the frames, px; needed with rotation or distortion of the camera")
+      ->expected(2)
+      ->check(CLI::Range(1, 100000));
   add_truth_options(verb, o->truth);
   add_profile_option(verb, o->profile);
   verb.callback([o, &common] { run(*o, common); });

@@ -20,6 +20,8 @@ namespace {
 /// The number of a field, NaN for an empty one; nothing if it is no finite number.
 std::optional<double> number_of(std::string_view field) {
   if (field.empty() || field == "nan" || field == "NaN") return std::numeric_limits<double>::quiet_NaN();
+  if (field == "True" || field == "true") return 1;  // as pandas writes
+  if (field == "False" || field == "false") return 0;
   double value = 0;
   const char* first = field.data() + (field.front() == '+' ? 1 : 0);
   const auto [end, error] = std::from_chars(first, field.data() + field.size(), value);

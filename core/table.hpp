@@ -18,8 +18,9 @@ struct Table {
   };
   std::string file;
   std::vector<std::string> names;
-  std::vector<std::vector<double>> columns;  ///< [names][rows]; NaN for an empty field, "nan" or text
-  std::map<std::size_t, Text> texts;         ///< of the columns that hold other things than numbers
+  std::vector<std::vector<double>>
+      columns;  ///< [names][rows]; NaN for an empty field, "nan" or text; True is 1, False is 0
+  std::map<std::size_t, Text> texts;  ///< of the columns that hold other things than numbers
 
   [[nodiscard]] std::size_t n_rows() const { return columns.empty() ? 0 : columns.front().size(); }
   /// The column called `name`.

@@ -213,11 +213,27 @@ py::object locate_beads_of(const py::object& stack, const imaging::LocatingReque
 struct TrackCall {
   calibration::FilmOptions film;
   std::optional<std::filesystem::path> output;
+  imaging::LocatedTableOptions table;
 };
 
+/// Whether a stack is a table of located beads: a mapping of columns, such as a DataFrame, or the name of a
+/// CSV file.
+bool is_table(const py::object& stack) {
+  if (py::hasattr(stack, "keys")) return true;
+  return (py::isinstance<py::str>(stack) || py::hasattr(stack, "__fspath__")) &&
+         imaging::is_located_table(stack.cast<std::filesystem::path>());
+}
+
 py::object track(const py::object& stack, TrackCall call, const py::object& callback) {
-  std::string name;
-  source_of(stack, name);  // for the name, and so that a stack that cannot be opened is refused first
+  std::string name, doubt;
+  std::optional<Table> table;
+  imaging::FrameRange range;
+  if (is_table(stack)) {
+    table = table_of(stack);
+    if (!py::hasattr(stack, "keys")) name = table->file;
+  } else {
+    source_of(stack, name);  // for the name, and so that a stack that cannot be opened is refused first
+  }
   if (call.output) {
     const std::filesystem::path parent = call.output->parent_path();
     call.film.folder = parent.empty() ? "." : parent;
@@ -228,6 +244,10 @@ py::object track(const py::object& stack, TrackCall call, const py::object& call
     Progress& to_;
   };
   calibration::TrackedFilm film = unlocked(callback, [&](Progress& progress) {
+    if (table)
+      return calibration::track_table(
+          *table, call.table, call.film,
+          [&](const std::string&) { return std::make_unique<Forwarded>(progress); }, doubt, range);
     return calibration::track_film(
         [&](const imaging::LocatorOptions& locator) {
           const py::gil_scoped_acquire lock;
@@ -250,6 +270,7 @@ py::object track(const py::object& stack, TrackCall call, const py::object& call
     imaging::write_trajectory(film.stack, film.plan, memory);
     trajectory = std::make_shared<Trajectory>(std::move(memory));
   }
+  if (!doubt.empty()) PyErr_WarnEx(PyExc_UserWarning, (doubt + ".").c_str(), 2);
   if (!film.stack.phases.warning.empty())
     PyErr_WarnEx(PyExc_UserWarning, (film.stack.phases.warning + ".").c_str(), 2);
   if (!film.check.disagreement.empty())
@@ -292,8 +313,10 @@ void bind_locating(py::module_& module) {
          double min_score, double min_explained, const std::string& refine, bool bright, bool dark,
          const std::string& flat, const std::string& background, const std::string& roi,
          const std::string& mask, const std::string& frames, double range, int memory,
-         bool trust_stated_drive, int shortest, int threads, const py::object& callback) {
+         bool trust_stated_drive, int shortest, const std::map<std::string, std::string>& columns,
+         const std::optional<std::array<int, 2>>& picture_size, int threads, const py::object& callback) {
         TrackCall call;
+        call.table = {.columns = columns, .diameter_px = {}, .picture = picture_size};
         call.output = output;
         call.film.request = {
             .cell_file = cell ? cell->string() : std::string(),
@@ -330,8 +353,16 @@ void bind_locating(py::module_& module) {
       py::arg("bright") = false, py::arg("dark") = false, py::arg("flat") = "", py::arg("background") = "",
       py::arg("roi") = "", py::arg("mask") = "", py::arg("frames") = "",
       py::arg("range") = link.range_diameters, py::arg("memory") = link.memory,
-      py::arg("trust_stated_drive") = false, py::arg("shortest") = 1, py::arg("threads") = 0,
-      py::arg("callback") = py::none(), header_text("calibration/drive/track_film.hpp", "track_film"));
+      py::arg("trust_stated_drive") = false, py::arg("shortest") = 1,
+      py::arg("columns") = std::map<std::string, std::string>{}, py::arg("picture_size") = py::none(),
+      py::arg("threads") = 0, py::arg("callback") = py::none(),
+      (std::string(header_text("calibration/drive/track_film.hpp", "track_film")) +
+       "\n\nstack: as for `locate`; or a table of located beads, a DataFrame or the name of a CSV file, with "
+       "columns "
+       "frame, x, y and optionally radius or diameter, sigma_x, sigma_y, tracer. columns: names of columns "
+       "of a table "
+       "that are called otherwise, {\"x\": \"X\"}. picture_size: width and height of its frames, px.")
+          .c_str());
 }
 
 }  // namespace twincell::python

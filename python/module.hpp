@@ -20,6 +20,7 @@
 
 #include "core/progress.hpp"
 #include "core/provenance.hpp"
+#include "core/table.hpp"
 #include "trajectory/box.hpp"
 
 namespace twincell::python {
@@ -61,6 +62,9 @@ auto unlocked(const py::object& callback, const Work& work) {
     throw;
   }
 }
+
+/// The table of an argument: a file, or a mapping from names to columns, such as a DataFrame.
+Table table_of(const py::object& said);
 
 /// An array of a type over memory that `owner` keeps alive; read-only unless `writable`.
 template <class Owner>

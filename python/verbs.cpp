@@ -11,9 +11,6 @@
 
 namespace twincell::python {
 
-namespace {
-
-/// The table of an argument: a file, or a mapping from names to columns, such as a DataFrame.
 Table table_of(const py::object& said) {
   if (!py::hasattr(said, "keys")) return read_table(said.cast<std::filesystem::path>());
   Table table;
@@ -21,8 +18,15 @@ Table table_of(const py::object& said) {
   for (const py::handle name : said.attr("keys")()) {
     const auto column = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(
         said.attr("__getitem__")(name));
-    if (!column) throw py::error_already_set();
     table.names.push_back(py::str(name).cast<std::string>());
+    if (!column) {  // text, which may stand beside the numbers
+      const py::object words = said.attr("__getitem__")(name);
+      const std::size_t rows = py::len(words);
+      table.columns.emplace_back(rows, std::nan(""));
+      const std::string first = rows > 0 ? py::str(words.attr("__iter__")().attr("__next__")()) : py::str("");
+      table.texts[table.names.size() - 1] = {.line = 0, .word = first};
+      continue;
+    }
     table.columns.emplace_back(column.data(), column.data() + column.size());
     if (column.ndim() != 1 || table.columns.back().size() != table.n_rows())
       throw InputError({.file = table.file, .key = table.names.back()},
@@ -31,6 +35,8 @@ Table table_of(const py::object& said) {
   if (table.n_rows() == 0) throw InputError({.file = table.file, .key = {}}, "has no rows.");
   return table;
 }
+
+namespace {
 
 /// Forwards the progress of a sweep as numbers of points.
 class ProgressWatch : public sweep::Watch {

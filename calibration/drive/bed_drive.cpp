@@ -138,6 +138,69 @@ void BedSteps::append(const Frame& frame) {
   before_ = frame;
 }
 
+namespace {
+
+/// The amplitude at which the phases of a bed on its plate return that amplitude: the scan goes from
+/// `smallest` to `largest` times the stated one, and a solution is where a(A)/A falls through 1. Of several,
+/// the one closest to the stated amplitude.
+std::optional<BedDrive> amplitude_of(const std::vector<BedSteps::Step>& steps, const Drive& drive,
+                                     double smallest, double largest) {
+  const double stated = drive.amplitude, per = drive.omega * drive.omega / drive.gravity;
+  std::optional<BedDrive> found;
+  double last = 0;
+  for (double amplitude = smallest * stated; amplitude < largest * stated; amplitude *= kRatio) {
+    const auto rest = time_at_rest(amplitude * per);
+    if (!rest) break;
+    const Fit fit = fit_steps(steps, rest->from, rest->to);
+    if (fit.cycles < kFewestCycles || fit.steps < kFewestSteps) break;  // larger A leaves fewer phases
+    const double ratio = fit.a / amplitude;
+    const bool through = last > 1 && ratio <= 1;
+    last = ratio;
+    if (!through || fit.misfit > kMisfit || std::abs(fit.b) > kPhaseError * fit.a) continue;
+    const BedDrive here{.amplitude = fit.a,
+                        .amplitude_error = fit.error,
+                        .cycles = fit.cycles,
+                        .from = rest->from,
+                        .to = rest->to};
+    if (!found || std::abs(std::log(here.amplitude / stated)) < std::abs(std::log(found->amplitude / stated)))
+      found = here;
+  }
+  return found;
+}
+
+/// The steps of frames that are `shift` phases later than stated.
+std::vector<BedSteps::Step> later(std::vector<BedSteps::Step> steps, int shift, int phases) {
+  for (BedSteps::Step& step : steps) {
+    const int phase = step.phase + shift;
+    const double length = step.end - step.begin, rest = step.begin - static_cast<double>(step.phase) / phases;
+    step.cycle += phase / phases;
+    step.phase = phase % phases;
+    step.begin = static_cast<double>(step.phase) / phases + rest;
+    step.end = step.begin + length;
+  }
+  return steps;
+}
+
+/// The drive at the only shift of the phases at which the bed moves like the stated plate.
+std::optional<BedDrive> at_another_phase(const BedSteps& bed, const Drive& drive, int phases) {
+  constexpr double kSame = 0.1;
+  std::optional<BedDrive> found;
+  for (int shift = 1; shift < phases; ++shift) {
+    std::optional<BedDrive> here =
+        amplitude_of(later(bed.steps(), shift, phases), drive, 1 - kSame, 1 + kSame);
+    if (!here) continue;
+    if (found && shift - found->phase_shift > 1) return std::nullopt;
+    const double off = std::abs(std::log(here->amplitude / drive.amplitude));
+    if (found && off > std::abs(std::log(found->amplitude / drive.amplitude))) continue;
+    found = here;
+    found->phase_shift = shift;
+  }
+  if (found && 2 * found->phase_shift > phases) found->phase_shift -= phases;
+  return found;
+}
+
+}  // namespace
+
 BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info) {
   BedDrive none;
   const auto because = [&](std::string why) {
@@ -150,31 +213,9 @@ BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info) {
   if (bed.steps().empty())
     return because(
         fmt::format("fewer than {} columns of beads are seen in consecutive frames", kFewestBeads));
-  const double stated = info.drive->amplitude, per = info.drive->omega * info.drive->omega;
-  // Scan over A: the solution is where a(A)/A falls through 1, that is, where the phases of a bed at
-  // amplitude A return that amplitude.
-  std::optional<BedDrive> found;
-  double last = 0;
-  std::string why = "at no phase of the cycle do its lowest beads move like a plate";
-  for (double amplitude = kSmallest * stated; amplitude < kLargest * stated; amplitude *= kRatio) {
-    const auto rest = time_at_rest(amplitude * per);
-    if (!rest) break;
-    const Fit fit = fit_steps(bed.steps(), rest->from, rest->to);
-    if (fit.cycles < kFewestCycles || fit.steps < kFewestSteps) break;  // larger A leaves fewer phases
-    const double ratio = fit.a / amplitude;
-    const bool through = last > 1 && ratio <= 1;
-    last = ratio;
-    if (!through || fit.misfit > kMisfit || std::abs(fit.b) > kPhaseError * fit.a) continue;
-    const BedDrive here{.amplitude = fit.a,
-                        .amplitude_error = fit.error,
-                        .cycles = fit.cycles,
-                        .from = rest->from,
-                        .to = rest->to};
-    // If several amplitudes explain the motion, take the one closest to the stated amplitude.
-    if (!found || std::abs(std::log(here.amplitude / stated)) < std::abs(std::log(found->amplitude / stated)))
-      found = here;
-  }
-  return found ? *found : because(why);
+  if (const auto found = amplitude_of(bed.steps(), *info.drive, kSmallest, kLargest)) return *found;
+  if (const auto found = at_another_phase(bed, *info.drive, info.phases_per_cycle)) return *found;
+  return because("at no phase of the cycle do its lowest beads move like a plate");
 }
 
 }  // namespace twincell::calibration

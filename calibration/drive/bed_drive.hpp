@@ -57,11 +57,14 @@ struct BedDrive {
   double amplitude = 0, amplitude_error = 0;  ///< sigma; standard error from the scatter between cycles
   std::size_t cycles = 0;                     ///< number of fitted cycles
   double from = 0, to = 1;                    ///< fitted interval, fractions of a cycle
-  std::string not_comparable;                 ///< why the bed gives no amplitude; empty if it does
+  int phase_shift = 0;         ///< frames by which the bed is later in the cycle than its phases state
+  std::string not_comparable;  ///< why the bed gives no amplitude; empty if it does
 };
 
 /// Fits the amplitude to the steps of the bed. Of several solutions it returns the one closest to the stated
-/// amplitude. \pre `info` states the drive
+/// amplitude. If the bed moves like a plate at no phase, the phases are shifted by whole frames; a shift is
+/// believed if it alone (or one of two neighbours) makes the bed move like a plate of the stated amplitude
+/// within a tenth. \pre `info` states the drive
 BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info);
 
 }  // namespace twincell::calibration

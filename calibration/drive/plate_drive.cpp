@@ -297,6 +297,26 @@ DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::files
   return check;
 }
 
+namespace {
+
+/// \param shift frames by which the bed is later in the cycle than its phases state
+std::string phase_disagreement(int shift, const TrajectoryInfo& info) {
+  const auto tracking = nlohmann::json::parse(info.tracking_json, nullptr, false);
+  const int n = info.phases_per_cycle;
+  const nlohmann::json::json_pointer first("/phase_lock/first_phase");
+  if (tracking.is_object() && tracking.contains(first)) {
+    const int stated = tracking[first].get<int>();
+    return fmt::format(
+        "the bed on its plate shows the first frame at phase {} of {}, the stated first phase is {} "
+        "(camera.first_phase, --first-phase)",
+        ((stated + shift) % n + n) % n, n, stated);
+  }
+  return fmt::format("the bed on its plate is {} of {} phases {} in the cycle than stated", std::abs(shift),
+                     n, shift > 0 ? "later" : "earlier");
+}
+
+}  // namespace
+
 DriveCheck check_by_bed(const BedSteps& bed, const TrajectoryInfo& info,
                         std::optional<double> frame_rate_hz) {
   DriveCheck check;
@@ -310,6 +330,10 @@ DriveCheck check_by_bed(const BedSteps& bed, const TrajectoryInfo& info,
   check.amplitude = seen.amplitude;
   check.amplitude_error = seen.amplitude_error;
   const std::string what = "the bed on its plate";
+  if (seen.phase_shift != 0) {
+    check.disagreement = phase_disagreement(seen.phase_shift, info);
+    return check;
+  }
   compare_amplitude(check, what, info.drive->amplitude, kShareOfBed,
                     info.scale.pixels_per_sigma.value_or(1e9));
   try {

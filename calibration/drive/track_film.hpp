@@ -11,6 +11,7 @@
 #include "calibration/drive/plate_drive.hpp"
 #include "core/progress.hpp"
 #include "core/stage_times.hpp"
+#include "imaging/track/located_table.hpp"
 #include "imaging/track/locating_request.hpp"
 #include "imaging/track/track.hpp"
 #include "imaging/track/track_request.hpp"
@@ -18,7 +19,7 @@
 
 namespace twincell::calibration {
 
-/// Options of track_film.
+/// Options of track_film and track_table.
 struct FilmOptions {
   imaging::TrackRequest request;
   imaging::LocatingRequest locating;  ///< beads, and the part of the film that is searched
@@ -52,5 +53,15 @@ TrackedFilm track_film(
     const std::filesystem::path& film, const FilmOptions& options,
     const std::function<std::unique_ptr<Progress>(const std::string& stage)>& progress,
     StageTimes* times = nullptr);
+
+/// Links the beads of a table and checks the stated drive against the motion of the bed.
+/// \param located names of columns, picture; `options.locating` may contain one diameter and nothing else
+/// \param doubt receives what is doubtful about the table, as a sentence without a full stop
+/// \param range receives the numbers of the frames
+/// \throws ConfigError, InputError as resolve_cell, phase_source, read_located, track_located; ConfigError
+/// for an option that says how the beads of frames are located
+TrackedFilm track_table(const Table& table, imaging::LocatedTableOptions located, const FilmOptions& options,
+                        const std::function<std::unique_ptr<Progress>(const std::string& stage)>& progress,
+                        std::string& doubt, imaging::FrameRange& range, StageTimes* times = nullptr);
 
 }  // namespace twincell::calibration

@@ -75,7 +75,7 @@ bool by_plate(PhaseTable& table, const PhaseLock& lock, std::span<const double> 
     const long shown =
         ((std::lround(fit.phase * cycle - lock.offset) % table.frames_per_cycle) + table.frames_per_cycle) %
         table.frames_per_cycle;
-    constexpr double kWrong = 1.5;  // frames
+    constexpr double kWrong = 0.75;  // frames
     if (std::abs(off) > kWrong)
       throw ConfigError(
           Where{.file = {}, .key = "first_phase"},

@@ -89,6 +89,25 @@ std::unique_ptr<FrameSource> prepare_frames(std::unique_ptr<FrameSource> frames,
                                    : flattened(std::move(frames), flat_of_blank(*picture));
 }
 
+std::string option_for_frames(const LocatingRequest& r) {
+  const LocatorOptions& l = r.locator;
+  const LocatorOptions usual;
+  for (const auto& [given, option] : {std::pair(r.diameters.size() > 1, "--diameter"),
+                                      {r.dark, "--dark"},
+                                      {l.preprocess.bright, "--bright"},
+                                      {!r.flat.empty(), "--flat"},
+                                      {!r.background.empty(), "--background"},
+                                      {!r.roi.empty(), "--roi"},
+                                      {!r.mask.empty(), "--mask"},
+                                      {!r.frames.empty(), "--frames"},
+                                      {r.refine_given || l.refine.method != usual.refine.method, "--refine"},
+                                      {l.finder != usual.finder, "--locator"},
+                                      {l.find.min_score != usual.find.min_score, "--min-score"},
+                                      {l.judge.min_score != usual.judge.min_score, "--min-explained"}})
+    if (given) return option;
+  return {};
+}
+
 Located in_whole_picture(Located located, const Region& region) {
   if (region.whole()) return located;
   for (std::vector<Detection>* list : {&located.beads, &located.dropped}) {

@@ -42,6 +42,9 @@ FrameRange frames_of(const LocatingRequest& request);
 /// \param locator as locator_of returned it \throws InputError, ConfigError
 std::unique_ptr<FrameSource> prepare_frames(std::unique_ptr<FrameSource> frames, const std::string& stack,
                                             const LocatingRequest& request, const LocatorOptions& locator);
+/// The option, other than one diameter, that says how the beads of frames are located, as "--bright"; empty
+/// if none is given.
+std::string option_for_frames(const LocatingRequest& request);
 /// A frame that was located in a region, with positions in the whole picture and without discs that the mask
 /// cuts.
 Located in_whole_picture(Located located, const Region& region);

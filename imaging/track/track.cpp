@@ -13,45 +13,12 @@
 #include "imaging/phase/trigger_list.hpp"
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/settings/size_of_scale.hpp"
+#include "imaging/track/inside_cell.hpp"
 #include "imaging/track/locate_stack.hpp"
 
 namespace twincell::imaging {
 
 namespace {
-
-bool outside(const CellDescription& cell, const std::optional<double>& lowest, cv::Size picture,
-             const Detection& b) {
-  if (!cell.origin || !cell.pixels_per_sigma) return false;
-  const Vec3 r = cell.pixel_frame(picture).cell_from_pixel({b.x, b.y});
-  return (cell.width && (r.x() < 0 || r.x() > *cell.width)) || (cell.height && r.z() > *cell.height + 0.5) ||
-         (lowest && r.z() < *lowest);
-}
-
-/// The lowest height that the plate reaches, if the drive is known.
-std::optional<double> lowest_plate(const CellDescription& cell) {
-  const std::optional<Drive> drive = cell.drive();
-  if (!drive) return {};
-  return drive->axis == Axis::z ? -drive->displacement_bound() : 0;
-}
-
-/// \throws InputError without any detection; ConfigError if most of them lie outside the cell
-void require_some_inside(const CellDescription& cell, std::size_t inside, std::size_t outside) {
-  if (inside == 0 && outside == 0)
-    throw InputError(
-        Where{},
-        "No bead was located in any frame; --dark, --bright or --diameter may help, and twincell "
-        "locate STACK --view page.html shows what was considered.");
-  if (inside >= outside) return;
-  throw ConfigError(
-      Where{.file = {}, .key = "camera.origin_px"},
-      fmt::format(
-          "is {:g}, {:g}, but {} the {} located beads {} inside the cell{}{}; correct the origin, "
-          "camera.pixels_per_sigma = {:g}, or the size of the cell, or select a part of the picture (--roi).",
-          cell.origin->x_px, cell.origin->y_px,
-          inside == 0 ? std::string("none of") : fmt::format("only {} of", inside), inside + outside,
-          inside == 0 ? "lies" : "lie", cell.width ? fmt::format(" of width {:g}", *cell.width) : "",
-          cell.height ? fmt::format(" and height {:g}", *cell.height) : "", *cell.pixels_per_sigma));
-}
 
 double bytes_of(const cv::Mat& frame) {
   return static_cast<double>(frame.total() * frame.elemSize());
@@ -105,7 +72,7 @@ Detections detect(FramesAhead& frames, const LocatorOptions& locator, const Cell
   Detections all{.frames = DetectionStore(folder)};
   std::vector<TrackedBead> beads;
   std::size_t inside = 0;
-  const std::optional<double> lowest = lowest_plate(cell);
+  const InsideCell in_cell(cell, picture);
   locate_stack(
       frames, locator, threads,
       [&](std::int64_t, const cv::Mat& grey, const Located& found) {
@@ -118,7 +85,7 @@ Detections detect(FramesAhead& frames, const LocatorOptions& locator, const Cell
           b.x += region.corner().x;
           b.y += region.corner().y;
           if (region.cuts(b.x, b.y, b.radius)) continue;
-          if (outside(cell, lowest, picture, b)) {
+          if (!in_cell({b.x, b.y})) {
             ++all.outside_cell;
             continue;
           }

@@ -31,7 +31,7 @@ TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell
   }
   info.drive = cell.drive();
   info.columns.identity = true;
-  info.columns.position_sigma = true;
+  info.columns.position_sigma = stack.has_errors;
   info.columns.phase = stack.phases.locked();
   info.columns.plate_height = info.drive && stack.phases.locked();
   info.phases_per_cycle = stack.phases.frames_per_cycle;
@@ -136,7 +136,7 @@ void write_trajectory(const TrackedStack& stack, const TrackPlan& plan, Trajecto
       frame.plate_height = info.drive->displacement(fraction - std::floor(fraction));
     }
     frame.position.assign(info.n_beads, Vec3(nan, nan, nan));
-    frame.position_sigma.assign(info.n_beads, Vec3(nan, nan, nan));
+    if (stack.has_errors) frame.position_sigma.assign(info.n_beads, Vec3(nan, nan, nan));
     frame.id.assign(info.n_beads, -1);
     for (const TrackedBead& b : stack.frames[f]) {
       const std::int64_t slot = plan.slot_of_track[static_cast<std::size_t>(b.track)];
@@ -144,7 +144,7 @@ void write_trajectory(const TrackedStack& stack, const TrackPlan& plan, Trajecto
       const auto i = static_cast<std::size_t>(slot);
       frame.id[i] = slot;
       frame.position[i] = plan.pixel_frame.cell_from_pixel({b.x_px, b.y_px});
-      frame.position_sigma[i] = Vec3(b.sigma_x_px / scale, nan, b.sigma_y_px / scale);
+      if (stack.has_errors) frame.position_sigma[i] = Vec3(b.sigma_x_px / scale, nan, b.sigma_y_px / scale);
     }
     sink.append(frame);
   }

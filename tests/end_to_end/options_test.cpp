@@ -120,6 +120,7 @@ const std::map<std::string, std::string> kQuantities = {
     {"phase-lock", "source of the phases"},
     {"phase-of-step-zero", "phase of an import's first step"},
     {"phases", "list of phases to write"},
+    {"picture-size", "size of the frames of a table, px"},
     {"pixels-per-sigma", "scale of the camera"},
     {"profile", "where the time went"},
     {"quick", "fewer settings"},

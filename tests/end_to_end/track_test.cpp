@@ -2,9 +2,11 @@
 // true positions.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -150,6 +152,74 @@ TEST_F(DemoFilm, TheStatedDriveIsThatOfTheChosenFrames) {
       EXPECT_EQ(said["drive_check"]["by"], "plate") << said["drive_check"];
       EXPECT_NEAR(said["drive_check"]["amplitude"], 0.9, 0.002);
     }
+}
+
+// The beads of `locate`, written to a table and linked, are those of the film.
+TEST_F(DemoFilm, ATableOfBeadsIsTrackedAsItsFilm) {
+  // Four cycles, which the bed needs to confirm the phases.
+  const std::string stack = TWINCELL_SOURCE_DIR "/data_samples/demo/gamma-1.6", cell = stack + "/CELL.toml",
+                    table = folder_ / "beads.csv";
+  ASSERT_EQ(run_program({"locate", stack, "-o", table, "-q"}).code, 0);
+  const Ran film = run_program({"track", stack, "-o", folder_ / "film.h5", "--json", "--cell", cell});
+  ASSERT_EQ(film.code, 0) << film.err;
+  const auto of_table = [&](std::vector<std::string> more) {
+    std::vector<std::string> words = {"track", table, "-o", folder_ / "exp.h5", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  };
+  const Ran linked = of_table({"--cell", cell});
+  ASSERT_EQ(linked.code, 0) << linked.err;
+  const auto a = nlohmann::json::parse(film.out), b = nlohmann::json::parse(linked.out);
+  for (const char* same : {"frames", "beads_located", "tracks", "slots", "outside_cell", "links", "tracers"})
+    EXPECT_EQ(a[same], b[same]) << same;
+  EXPECT_EQ(b["phase_lock"]["checked_by"], "the bed");
+  EXPECT_TRUE(validate_h5md(folder_ / "exp.h5").empty());
+  const H5mdReader one(folder_ / "film.h5"), two(folder_ / "exp.h5");
+  Frame p, q;
+  for (std::size_t f = 0; f < one.n_frames(); ++f) {
+    one.read(f, p), two.read(f, q);
+    ASSERT_EQ(p.position.size(), q.position.size());
+    EXPECT_EQ(p.plate_height, q.plate_height);
+    for (std::size_t i = 0; i < p.position.size(); ++i) {
+      EXPECT_LT((p.position[i] - q.position[i]).cwiseAbs().maxCoeff(), 1e-5);  // four decimals of a pixel
+      EXPECT_NEAR(p.position_sigma[i].x(), q.position_sigma[i].x(), 1e-6);
+    }
+  }
+  const Ran bright = of_table({"--bright"});
+  EXPECT_EQ(bright.code, 2);
+  EXPECT_NE(bright.err.find("beads.csv: --bright: says how the beads of frames are located"),
+            std::string::npos);
+  const Ran columns = track({"--columns", "frame=t"});
+  EXPECT_EQ(columns.code, 2);
+  EXPECT_NE(columns.err.find("--columns: applies to a table of located beads (.csv)"), std::string::npos);
+}
+
+// Another program counts from 1 and gives nothing but positions.
+TEST_F(DemoFilm, ATableOfAnotherProgram) {
+  ASSERT_EQ(run_program({"locate", stack_, "--frames", ":40", "-o", folder_ / "beads.csv", "-q"}).code, 0);
+  std::ifstream in(folder_ / "beads.csv");
+  std::ofstream out(folder_ / "own.csv");
+  out << "Y,X,t\n";
+  std::string line;
+  std::getline(in, line);
+  while (std::getline(in, line)) {
+    std::vector<std::string> fields;
+    std::istringstream words(line);
+    for (std::string word; std::getline(words, word, ',');) fields.push_back(word);
+    out << fields[0] << ',' << fields[1] << ',' << std::stoi(fields[8]) + 1 << '\n';
+  }
+  out.close();
+  const Ran ran =
+      run_program({"track", folder_ / "own.csv", "-o", folder_ / "exp.h5", "--cell", cell_, "--columns",
+                   "frame=t", "x=X", "y=Y", "--diameter", "12", "--first-phase", "19", "--json"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(ran.err.find("own.csv has the number 1; its phase is 0, as frames count from 0"),
+            std::string::npos)
+      << ran.err;
+  const auto said = nlohmann::json::parse(ran.out);
+  EXPECT_EQ(said["tracks"], 100);
+  EXPECT_EQ(said["links"]["made"], 3900);
+  EXPECT_FALSE(H5mdReader(folder_ / "exp.h5").info().columns.position_sigma);
 }
 
 TEST_F(DemoFilm, AWrongOriginIsNoticed) {

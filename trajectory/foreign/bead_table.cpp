@@ -97,7 +97,7 @@ class TableReader final : public PictureBeadsReader {
                                needed, needed, fmt::join(names, ", "),
                                std::string_view(needed) == "particle"
                                    ? " Beads that are not linked, such as those of locate, have no particle; "
-                                     "track locates and links a stack."
+                                     "track links them."
                                    : ""));
     if (options_.dimension == 3 && !column("z")) fail_at(1, "there is no column 'z' (--dimension 3).");
     has_.radius = column("radius") || column("diameter");

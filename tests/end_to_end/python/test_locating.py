@@ -63,6 +63,26 @@ def test_track_is_the_verb_to_the_bit(tmp_path, tracked):
     assert np.array_equal(np.asarray(again.positions), np.asarray(tracked.positions), equal_nan=True)
 
 
+def test_located_beads_are_linked(tmp_path, tracked):
+    beads = twincell.locate(DEMO, threads=1, **{"diameter": [12.0], "dark": True})
+    beads["note"] = "text beside the numbers"
+    mine = twincell.track(beads, cell=DEMO / "CELL.toml")
+    assert np.array_equal(np.asarray(mine.positions), np.asarray(tracked.positions), equal_nan=True)
+    assert np.array_equal(mine.tracers, tracked.tracers)
+    # A selection, other names, and a file.
+    some = beads[beads.frame < 20].rename(columns={"x": "X"})[["frame", "X", "y"]]
+    names = {"diameter": 12.0, "columns": {"x": "X"}, "cell": DEMO / "CELL.toml"}
+    with pytest.raises(ValueError, match="x: this column is missing"):
+        twincell.track(some, diameter=12.0)
+    few = twincell.track(some, **names)
+    assert len(few) == 20 and few.position_sigma is None
+    some.to_csv(tmp_path / "some.csv", index=False)
+    again = twincell.track(tmp_path / "some.csv", **names)
+    assert np.array_equal(np.asarray(few.positions), np.asarray(again.positions))
+    with pytest.raises(ValueError, match="says how the beads of frames are located"):
+        twincell.track(some, bright=True, **names)
+
+
 def test_wrong_options_have_the_sentence_of_the_program(tmp_path):
     out = tmp_path / "x.h5"
     said, _ = sentence_of_option("track", DEMO, "-o", out, "--phase-lock", "often")

@@ -404,7 +404,7 @@ TEST(Scene, KeysOfAnotherStartOrCellAreRefused) {
   EXPECT_NE(complaint(table, {"beads.spread=uniform", "beads.spread_width=0.1"})
                 .find("beads.spread: radii are not drawn for the beads of a table"),
             std::string::npos);
-  expect_complaint("\"beads.count\" = 5\n" + kGood, "beads.count: there is no such key");
+  expect_complaint("\"beads.count\" = 5\n" + kGood, "beads.count: is a name in quotes");
   expect_complaint(kGood + "gamma = 2.0\n", "scene.toml:6");  // the key occurs twice
 }
 

@@ -89,6 +89,30 @@ TEST(BedDrive, IsShownByBedsThatLieOnThePlateForAThirdOfTheCycle) {
                    worst(gamma));
 }
 
+// A first phase that is stated wrongly shifts all phases. The bed shows by how much.
+TEST(BedDrive, ShowsAWrongFirstPhase) {
+  for (const double gamma : {0.9, 1.2, 1.4})
+    for (const int layers : {4, 10}) {
+      const MemoryTrajectory run = simulated(bed(gamma, 1, "random", layers));
+      for (const int late : {0, 1, 2, 7, 10, 19}) {
+        MemoryTrajectory film = seen(run, 1.5, 1);
+        const int n = film.info().phases_per_cycle;
+        BedSteps steps(film.info());
+        for (Frame frame : film.frames()) {
+          const std::int64_t at = frame.cycle * n + frame.phase + late;
+          frame.phase = static_cast<std::int32_t>(at % n);
+          frame.cycle = at / n;
+          frame.time += late * film.info().drive->period() / n;
+          steps.append(frame);
+        }
+        const BedDrive d = drive_of_bed(steps, film.info());
+        ASSERT_TRUE(d.not_comparable.empty()) << gamma << ' ' << late << ": " << d.not_comparable;
+        EXPECT_EQ((d.phase_shift + late) % n, 0) << gamma << ", " << layers << " layers, " << late;
+        EXPECT_NEAR(d.amplitude / film.info().drive->amplitude, 1, 0.05);
+      }
+    }
+}
+
 TEST(BedDrive, IsNotShownByBedsThatFlyTooLongOrAreNone) {
   const auto silent = [](const MemoryTrajectory& run, const char* what) {
     for (const double stated : {1.0, 1.6, 1 / 1.6}) {

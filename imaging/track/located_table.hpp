@@ -1,0 +1,57 @@
+#pragma once
+/// \file
+/// Beads that were located before: the table of `locate`, or that of another program.
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "core/table.hpp"
+#include "imaging/stack/chosen_frames.hpp"
+#include "imaging/track/track.hpp"
+
+namespace twincell::imaging {
+
+/// The beads of a table, frame by frame.
+struct LocatedTable {
+  DetectionStore frames;  ///< of all numbers from the first to the last; those without a row have no bead
+  FrameRange range;       ///< their numbers
+  double diameter_px = 0;
+  int width_px = 0,
+      height_px = 0;          ///< of the picture; if not stated, of the smallest that contains all beads
+  bool has_picture = false;   ///< its size is stated
+  bool has_errors = false;    ///< the table has sigma_x and sigma_y
+  std::string spacing_doubt;  ///< says that the beads are too close for their size; otherwise empty
+};
+
+/// What a user says about a table.
+struct LocatedTableOptions {
+  std::map<std::string, std::string> columns =
+      {};                                  ///< names of columns that are called otherwise, by quantity
+  std::optional<double> diameter_px = {};  ///< of the beads; absent: the median of the table's sizes
+  std::optional<std::array<int, 2>> picture =
+      {};  ///< width and height of the frames, px; required by a cell with
+           ///< rotation or distortion, which are about their centre
+};
+
+/// Whether the name of a stack is that of a table: a file .csv.
+bool is_located_table(const std::filesystem::path& name);
+
+/// Reads one bead a row. Columns: `frame`, whole numbers from 0; `x` and `y`, px, y downwards, pixel centres
+/// at whole numbers; optional `radius` or `diameter`, px; `sigma_x` and `sigma_y`, standard errors, px;
+/// `tracer`, 1 or 0. Others are ignored. Rows may have any order. \param folder as link_detections \throws
+/// InputError naming the row for numbers out of range, more than 10^7 frames, beads outside the picture, or
+/// a table without a size if none is given; ConfigError for columns that are missing or unknown
+LocatedTable read_located(const Table& table, const LocatedTableOptions& options,
+                          const std::filesystem::path& folder);
+
+/// Links located beads as track_stack links those of frames: without beads outside the cell, phases by beads
+/// alone. \throws InputError, ConfigError as track_stack
+TrackedStack track_located(LocatedTable located, LinkOptions link, const CellDescription& cell,
+                           const PhaseSource& source, const std::filesystem::path& folder,
+                           Progress& progress = Progress::none());
+
+}  // namespace twincell::imaging
