@@ -181,8 +181,9 @@ TEST_F(DemoFilm, ATableOfBeadsIsTrackedAsItsFilm) {
     ASSERT_EQ(p.position.size(), q.position.size());
     EXPECT_EQ(p.plate_height, q.plate_height);
     for (std::size_t i = 0; i < p.position.size(); ++i) {
-      EXPECT_LT((p.position[i] - q.position[i]).cwiseAbs().maxCoeff(), 1e-5);  // four decimals of a pixel
-      EXPECT_NEAR(p.position_sigma[i].x(), q.position_sigma[i].x(), 1e-6);
+      EXPECT_LT((p.position[i] - q.position[i]).cwiseAbs().maxCoeff(),
+                5e-5);  // the diameter is found, there stated
+      EXPECT_NEAR(p.position_sigma[i].x(), q.position_sigma[i].x(), 2e-5);
     }
   }
   const Ran bright = of_table({"--bright"});
