@@ -45,9 +45,10 @@ void note_doubts(const Common& common, const ForeignTrajectory& source, double s
                        "overlap, because their radii make them {:.3g} wide: the radii may be diameters.",
                        source.spacing(), wide));
   if (source.n_beyond() > 0)
-    note(common, fmt::format("{} of the first frame lie beyond the side walls of the cell, which is {:.4g} "
+    note(common, fmt::format("{} of the first frame {} beyond the side walls of the cell, which is {:.4g} "
                              "bead diameters wide (--cell-origin, --cell-width).",
-                             counted(source.n_beyond(), "bead"), source.info().box.upper.x()));
+                             counted(source.n_beyond(), "bead"), source.n_beyond() == 1 ? "lies" : "lie",
+                             source.info().box.upper.x()));
   if (const double missing = source.missing_frames(); missing > 0)
     note(common,
          fmt::format("the numbers of the steps or frames leave out {:g} {} between the {} of the file.",

@@ -80,7 +80,7 @@ py::array array_of_picture(const cv::Mat& picture) {
 
 cv::Mat picture_of_array(const py::handle& said) {
   auto array = py::array::ensure(said);
-  if (!array) throw py::error_already_set();
+  if (!array) throw ConfigError({.file = {}, .key = "picture"}, "is no array of numbers.");
   if (array.ndim() != 2 || array.size() == 0) {
     std::string shape;
     for (py::ssize_t k = 0; k < array.ndim(); ++k)
@@ -91,7 +91,7 @@ cv::Mat picture_of_array(const py::handle& said) {
   const auto as = [&](auto pixel, int type) {
     using Pixel = decltype(pixel);
     const auto dense = py::array_t<Pixel, py::array::c_style | py::array::forcecast>::ensure(array);
-    if (!dense) throw py::error_already_set();
+    if (!dense) throw ConfigError({.file = {}, .key = "picture"}, "is no array of numbers.");
     const cv::Mat picture(static_cast<int>(dense.shape(0)), static_cast<int>(dense.shape(1)), type,
                           const_cast<Pixel*>(dense.data()));
     return picture.clone();  // the owner of the array may reuse it while other threads read the picture

@@ -119,7 +119,7 @@ int threads_of(int threads) {
 
 std::vector<Vec3> points_of(const py::handle& points, const std::string& name) {
   const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(points);
-  if (!array) throw py::error_already_set();
+  if (!array) throw ConfigError({.file = {}, .key = name}, "is no array of numbers.");
   if (array.ndim() != 2 || (array.shape(1) != 2 && array.shape(1) != 3)) {
     std::string shape;
     for (py::ssize_t k = 0; k < array.ndim(); ++k)

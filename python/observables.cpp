@@ -9,6 +9,7 @@
 #include "analysis/neighbours/neighbours.hpp"
 #include "analysis/neighbours/voronoi.hpp"
 #include "analysis/observable/observable.hpp"
+#include "core/constants.hpp"
 #include "core/error.hpp"
 #include "python/module.hpp"
 
@@ -34,7 +35,13 @@ Box box_of(const py::object& said) {
   Box box;
   box.boundary = {Boundary::open, Boundary::open, Boundary::open};
   if (said.is_none()) return box;
-  const auto lengths = said.cast<std::vector<double>>();
+  std::vector<double> lengths;
+  try {
+    lengths = said.cast<std::vector<double>>();
+  } catch (const py::cast_error&) {
+    throw ConfigError({.file = {}, .key = "box"},
+                      "must be a Box, None, or the lengths of a periodic box, 2 (x, z) or 3 (x, y, z).");
+  }
   if (lengths.size() != 2 && lengths.size() != 3)
     throw ConfigError(
         {.file = {}, .key = "box"},
@@ -160,7 +167,7 @@ void bind_observables(py::module_& module) {
         for (std::size_t i = 0; i < order.psi6.size(); ++i)
           psi.push_back(std::isfinite(order.angle[i])
                             ? std::polar(order.psi6[i], 6 * order.angle[i] * M_PI / 180)
-                            : std::complex<double>(order.psi6[i]));
+                            : std::complex<double>(kNaN, kNaN));
         return array_of(std::move(psi));
       },
       py::arg("points"), py::arg("box") = py::none(), py::arg("neighbours") = "cutoff",

@@ -4,7 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <type_traits>
 
 #include "core/error.hpp"
 #include "trajectory/box.hpp"
@@ -217,7 +220,7 @@ class VectorArray {
   VectorArray(const py::object& said, const char* name, py::ssize_t frames, py::ssize_t beads) {
     if (said.is_none()) return;
     values_ = Numbers::ensure(said);
-    if (!values_) throw py::error_already_set();
+    if (!values_) throw ConfigError({.file = {}, .key = name}, "is no array of numbers.");
     const bool fits = values_.ndim() == 3 && (values_.shape(2) == 2 || values_.shape(2) == 3) &&
                       (frames < 0 || (values_.shape(0) == frames && values_.shape(1) == beads));
     if (fits) return;
@@ -251,14 +254,57 @@ class VectorArray {
 
 /// One number per frame or per bead.
 template <class T>
-std::vector<T> numbers_of(const py::object& said, const char* name, py::ssize_t length, const char* of) {
+std::vector<T> numbers_of(const py::object& said, const char* name, py::ssize_t length, const char* of,
+                          double least = 0, double most = HUGE_VAL) {
   if (said.is_none()) return {};
-  const auto values = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(said);
-  if (!values) throw py::error_already_set();
+  const auto values = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(said);
+  if (!values) throw ConfigError({.file = {}, .key = name}, "is no list of numbers.");
   if (values.ndim() != 1 || values.shape(0) != length)
     throw ConfigError({.file = {}, .key = name},
                       fmt::format("has {} values; there are {} {}.", values.size(), length, of));
-  return std::vector<T>(values.data(), values.data() + length);
+  if constexpr (std::is_integral_v<T>)
+    for (py::ssize_t k = 0; k < length; ++k)
+      if (const double v = values.data()[k];
+          !(v == std::floor(v) && v >= least && v <= std::min<double>(most, std::numeric_limits<T>::max())))
+        throw ConfigError(
+            {.file = {}, .key = name},
+            fmt::format("value {} is {:g}; whole numbers from {:g} on are needed.", k, v, least));
+  std::vector<T> all;
+  for (py::ssize_t k = 0; k < length; ++k) all.push_back(static_cast<T>(values.data()[k]));
+  return all;
+}
+
+/// \throws ConfigError for times that do not increase
+void require_increasing(const std::vector<double>& times) {
+  for (std::size_t t = 0; t < times.size(); ++t)
+    if (!std::isfinite(times[t]) || (t > 0 && times[t] <= times[t - 1]))
+      throw ConfigError({.file = {}, .key = "time"},
+                        fmt::format("is {:g} in frame {}; times must be finite and increase.", times[t], t));
+}
+
+/// Removes the jumps of beads that were wrapped into the periods of a box: all of them lie within it, and
+/// some step is longer than half a period.
+void unwrap(std::vector<Frame>& frames, const Box& box) {
+  for (const int axis : {0, 1, 2}) {
+    if (box.boundary[static_cast<std::size_t>(axis)] != Boundary::periodic) continue;
+    const double low = box.lower[axis], high = box.upper[axis], period = high - low;
+    bool inside = true, jumps = false;
+    for (std::size_t t = 0; t < frames.size(); ++t)
+      for (std::size_t i = 0; i < frames[t].position.size(); ++i) {
+        const double here = frames[t].position[i][axis];
+        inside = inside && !(here < low || here > high);
+        jumps = jumps || (t > 0 && std::abs(here - frames[t - 1].position[i][axis]) > period / 2);
+      }
+    if (!inside || !jumps) continue;
+    std::vector<double> last(frames.empty() ? 0 : frames.front().position.size(), std::nan(""));
+    for (Frame& frame : frames)
+      for (std::size_t i = 0; i < frame.position.size(); ++i) {
+        double& here = frame.position[i][axis];
+        if (!std::isfinite(here)) continue;
+        if (std::isfinite(last[i])) here = last[i] + std::remainder(here - last[i], period);
+        last[i] = here;
+      }
+  }
 }
 
 std::shared_ptr<Trajectory> from_arrays(const py::object& positions, const py::object& velocities,
@@ -284,13 +330,14 @@ std::shared_ptr<Trajectory> from_arrays(const py::object& positions, const py::o
   info.source = source;
   info.radius = numbers_of<double>(radii, "radii", beads, "beads");
   info.mass = numbers_of<double>(masses, "masses", beads, "beads");
-  info.tracer = numbers_of<std::uint8_t>(tracers, "tracers", beads, "beads");
+  info.tracer = numbers_of<std::uint8_t>(tracers, "tracers", beads, "beads", 0, 1);
   info.provenance_json = provenance_of("twincell.Trajectory.from_arrays (Python)").to_json();
-  const auto phases = numbers_of<std::int32_t>(phase, "phase", frames, "frames");
-  const auto cycles = numbers_of<std::int64_t>(cycle, "cycle", frames, "frames");
+  const auto phases = numbers_of<std::int32_t>(phase, "phase", frames, "frames", -1);
+  const auto cycles = numbers_of<std::int64_t>(cycle, "cycle", frames, "frames", -1);
   const auto times = numbers_of<double>(time, "time", frames, "frames");
-  const auto steps = numbers_of<std::int64_t>(step, "step", frames, "frames");
+  const auto steps = numbers_of<std::int64_t>(step, "step", frames, "frames", -9e15);
   const auto heights = numbers_of<double>(plate_height, "plate_height", frames, "frames");
+  require_increasing(times);
   if (phases.empty() != cycles.empty())
     throw ConfigError({.file = {}, .key = phases.empty() ? "phase" : "cycle"},
                       "is missing; phase and cycle of the frames are given together.");
@@ -329,6 +376,11 @@ std::shared_ptr<Trajectory> from_arrays(const py::object& positions, const py::o
                   .position_sigma = s.given()};
   if (box) {
     info.box = *box;
+    if (box->dimension == 2 && r.extent(2) == 3 && low.y() < high.y())
+      throw ConfigError(
+          {.file = {}, .key = "box"},
+          "is planar, but the positions are not; three-dimensional ones need Box(dimension=3).");
+    unwrap(all, info.box);
   } else {  // open on all sides, around the beads
     info.box.dimension = r.extent(2);
     info.box.boundary = {Boundary::open, Boundary::open, Boundary::open};

@@ -23,8 +23,15 @@ Table table_of(const py::object& said) {
       const py::object words = said.attr("__getitem__")(name);
       const std::size_t rows = py::len(words);
       table.columns.emplace_back(rows, std::nan(""));
-      const std::string first = rows > 0 ? py::str(words.attr("__iter__")().attr("__next__")()) : py::str("");
-      table.texts[table.names.size() - 1] = {.line = 0, .word = first};
+      std::string first;
+      long row = 0;
+      for (const py::handle word : py::iter(words)) {
+        ++row;
+        if (PyFloat_Check(word.ptr()) || PyLong_Check(word.ptr())) continue;
+        first = py::str(word).cast<std::string>();
+        break;
+      }
+      table.texts[table.names.size() - 1] = {.line = row, .word = first};
       continue;
     }
     table.columns.emplace_back(column.data(), column.data() + column.size());

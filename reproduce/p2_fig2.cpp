@@ -192,8 +192,7 @@ std::optional<Series> own_of(const Request& request) {
   if (request.data.empty()) return std::nullopt;
   const Table table = read_table(request.data);
   Series s{.title = "yours", .x = own_column(table, "W"), .y = {}};
-  for (const double t : own_column(table, "T_bar_z"))
-    s.y.push_back({.value = t, .low = {}, .high = {}});
+  for (const double t : own_column(table, "T_bar_z")) s.y.push_back({.value = t, .low = {}, .high = {}});
   return s;
 }
 

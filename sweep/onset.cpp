@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace twincell::sweep {
 
@@ -90,12 +91,22 @@ Onset estimate_onset(const std::vector<Trial>& trials, double low, double high, 
   if (from >= outside) onset.low = mu_at(from) - h / 2;
   if (to < outside + steps) onset.high = mu_at(to) + h / 2;
   for (std::size_t k = 0; k < all; ++k) onset.profile.push_back({mu_at(k), log_l[k] - top});
+  std::vector<Heap> opposite = heaps;
+  for (Heap& heap : opposite) std::swap(heap.yes, heap.no);
+  double falling = -INFINITY;
+  for (std::size_t k = outside; k < outside + steps; ++k)
+    falling = std::max(falling, profile(opposite, mu_at(k), width / kFiner, range / 2));
+  if (2 * (falling - top) > kLikelihoodDrop) {
+    onset.falls = true;
+    onset.value.reset(), onset.low.reset(), onset.high.reset();
+  }
   return onset;
 }
 
 std::string Onset::text() const {
   const std::string of = fmt::format("yes in {} of {} runs", yes, n);
   if (n == 0) return "no answer yet";
+  if (falls) return "none, as the answers change from yes to no: " + of;
   if (value && low && high) return fmt::format("{:.4g} [{:.4g}, {:.4g}], {}", *value, *low, *high, of);
   if (low && high) return fmt::format("in [{:.4g}, {:.4g}], {}", *low, *high, of);
   if (low) return fmt::format("above {:.4g}, {}", *low, of);
@@ -134,6 +145,7 @@ double evidence_above(const Onset& upper, const Onset& lower) {
 }
 
 bool settled(const Onset& onset, double low, double high, double width) {
+  if (onset.falls) return true;
   if (onset.low && onset.high) return *onset.high - *onset.low <= width * (1 + 1e-9);
   if (onset.low) return *onset.low >= high - width;
   if (onset.high) return *onset.high <= low + width;

@@ -28,7 +28,8 @@ struct Onset {
   std::optional<double> value;      ///< most likely mu; absent outside the range or if all answers agree
   std::optional<double> low, high;  ///< 95 % interval; an absent end is open (one-sided limit)
   double level = 0.95;
-  std::size_t n = 0, yes = 0;       ///< number of trials, and of those with the answer yes
+  std::size_t n = 0, yes = 0;  ///< number of trials, and of those with the answer yes
+  bool falls = false;          ///< the answers change from yes to no instead: value, low and high are absent
   std::vector<Likelihood> profile;  ///< on a grid over the range and half a range beyond either end
 
   /// "1.17 [1.15, 1.19], yes in 9 of 20 runs"; "above 2.9, yes in 0 of 12 runs".
@@ -40,8 +41,9 @@ struct Onset {
 /// half the range. The lower bound of w keeps the fit finite if all answers no are below all answers yes. The
 /// upper bound gives a single change of answer little weight: about four agreeing runs on either side are
 /// needed before that side of the interval is closed. mu is searched up to half a range beyond either end; an
-/// interval that extends beyond the range is open on that side.
-/// \param low, high range of the trials \param width wanted width of the interval \pre low < high, width > 0
+/// interval that extends beyond the range is open on that side. The same law that falls from yes to no is
+/// fitted too; if it is more likely by kLikelihoodDrop, the answers fall, and there is no onset. \param low,
+/// high range of the trials \param width wanted width of the interval \pre low < high, width > 0
 Onset estimate_onset(const std::vector<Trial>& trials, double low, double high, double width);
 
 /// Positions of the next `batch` runs: the (i + 1/2)/batch quantiles of the likelihood of mu, so that runs
@@ -56,7 +58,7 @@ std::vector<double> next_places(const Onset& onset, double low, double high, dou
 double evidence_above(const Onset& upper, const Onset& lower);
 
 /// Whether the search is finished: the interval is closed and not wider than `width`, or a one-sided limit
-/// places the onset less than `width` from an end of the range or beyond it.
+/// places the onset less than `width` from an end of the range or beyond it, or the answers fall.
 bool settled(const Onset& onset, double low, double high, double width);
 
 }  // namespace twincell::sweep

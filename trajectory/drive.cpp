@@ -240,7 +240,8 @@ namespace {
 /// A given number without its constant factor: value = A^p omega^q.
 struct Term {
   const char* name;
-  double value;
+  double value;   ///< A^p omega^q
+  double factor;  ///< of the stated number in it: g of Gamma, 2 pi of a frequency
   int p, q;
 };
 
@@ -252,7 +253,7 @@ std::vector<Term> terms_of(const DriveSpec& s, double gravity, const Where& wher
     require_range(here, *v, 0.0, std::nullopt, p == 0);
     if (factor == 0)
       throw ConfigError(here, "has no meaning without gravity; give the amplitude or the peak velocity.");
-    terms.push_back({name, *v * factor, p, q});
+    terms.push_back({name, *v * factor, factor, p, q});
   };
   add("amplitude", s.amplitude, 1, 1, 0);
   add("omega", s.omega, 1, 0, 1);
@@ -341,7 +342,7 @@ Drive solve_drive(const DriveSpec& spec, double gravity, const Where& where, Axi
         if (std::abs(implied - u.value) > 1e-12 * std::max(std::abs(implied), std::abs(u.value)))
           throw ConfigError(where, fmt::format("{} = {} contradicts the other numbers, from which it would "
                                                "be {} (they must agree to 1e-12).",
-                                               u.name, u.value, implied));
+                                               u.name, u.value / u.factor, implied / u.factor));
       }
       return drive;
     }

@@ -309,7 +309,28 @@ std::vector<analysis::Checks::Filmed> film_matches(const Sides& sides, const Com
   return filmed;
 }
 
-/// Notes pairs of runs that agree in Gamma and not in K_m: their frequencies differ.
+/// Notes pairs of runs whose drives have another form: harmonics, a record, a ramp, a motion along x.
+void note_other_drives(const Sides& sides, const std::vector<analysis::Run>& runs,
+                       const std::vector<analysis::Match>& matches, std::vector<std::string>& notes) {
+  const auto form = [&](std::size_t run) {
+    const std::optional<Drive>& drive = sides.trajectories[run]->info().drive;
+    return drive ? drive->formula() : std::string();
+  };
+  for (const analysis::Match& match : matches) {
+    if (match.experiments.empty()) continue;
+    const std::size_t e = match.experiments.front();
+    for (const std::size_t s : match.simulations)
+      if (!form(e).empty() && !form(s).empty() && form(s) != form(e)) {
+        notes.push_back(
+            fmt::format("the drive is {} in {} and {} in {}: these runs are compared, but their drives have "
+                        "another form.",
+                        form(e), runs[e].name, form(s), runs[s].name));
+        break;
+      }
+  }
+}
+
+/// Notes pairs of runs that agree in Gamma and not in K_m: Gamma^2/K_m is omega^2 sigma/g.
 void note_other_frequencies(const std::vector<analysis::Run>& runs,
                             const std::vector<analysis::Match>& matches, std::vector<std::string>& notes) {
   constexpr double kSame = 0.1;
@@ -322,7 +343,7 @@ void note_other_frequencies(const std::vector<analysis::Run>& runs,
     if (other != match.simulations.end())
       notes.push_back(
           fmt::format("Gamma = {:.4g}: K_m is {:.4g} in {} and {:.4g} in {}: these runs are "
-                      "compared, but their frequencies differ.",
+                      "compared, but omega^2 sigma/g differs.",
                       match.gamma, of_experiment, runs[match.experiments.front()].name, runs[*other].k_m,
                       runs[*other].name));
   }
@@ -347,6 +368,7 @@ analysis::Comparison compare_runs(const ComparingOptions& options, const Progres
   refuse_repeated_runs(c.runs);
   c.matches = analysis::match_runs(c.runs, options.tolerance);
   note_other_frequencies(c.runs, c.matches, notes);
+  note_other_drives(sides, c.runs, c.matches, notes);
   if (options.film) c.checks.filmed = film_matches(sides, options, c.matches, progress, notes, c.runs);
   limit_pictures(c.runs);
   c.boundaries = analysis::find_boundaries(c.runs);

@@ -33,29 +33,30 @@ struct Instant {
   double time = 0, height = 0;
 };
 
-/// Least-squares parabola z = a + b s - s^2/2 through the instants from a given time on. The time s is
+/// Least-squares parabola z = a + b s - g s^2/2 through the instants from a given time on. The time s is
 /// counted from the first instant, so that the sums lose no precision.
 class Parabola {
  public:
   /// \pre at least two instants with different times
-  Parabola(const std::vector<Instant>& instants, double from) : origin_(instants.front().time) {
+  Parabola(const std::vector<Instant>& instants, double from, double gravity)
+      : origin_(instants.front().time), gravity_(gravity) {
     double n = 0, t = 0, tt = 0, y = 0, ty = 0;
     for (const Instant& m : instants) {
       if (m.time < from) continue;
-      const double s = m.time - origin_, v = m.height + s * s / 2;
+      const double s = m.time - origin_, v = m.height + gravity_ * s * s / 2;
       n += 1, t += s, tt += s * s, y += v, ty += s * v;
     }
     b_ = (n * ty - t * y) / (n * tt - t * t);
     a_ = (y - b_ * t) / n;
   }
-  [[nodiscard]] double velocity(double time) const { return b_ - (time - origin_); }
+  [[nodiscard]] double velocity(double time) const { return b_ - gravity_ * (time - origin_); }
   [[nodiscard]] double height(double time) const {
     const double s = time - origin_;
-    return a_ + b_ * s - s * s / 2;
+    return a_ + b_ * s - gravity_ * s * s / 2;
   }
 
  private:
-  double origin_, a_ = 0, b_ = 0;
+  double origin_, gravity_, a_ = 0, b_ = 0;
 };
 
 /// Bisection: the point between `holds`, where the condition is true, and `not_any_more`, where it is false,
@@ -100,7 +101,8 @@ class BedFlight : public Observable {
     if (last_.size() < static_cast<std::size_t>(2 * stride_ + 1)) return;
     const Instant &before = last_.front(), &middle = last_[static_cast<std::size_t>(stride_)];
     const double step = (now.time - before.time) / 2;
-    judge(middle, 1 + (before.height - 2 * middle.height + now.height) / (step * step));
+    judge(middle,
+          1 + (before.height - 2 * middle.height + now.height) / (step * step * info_.drive->gravity));
     last_.pop_front();
   }
 
@@ -184,13 +186,13 @@ class BedFlight : public Observable {
   void land(double carried) {
     const double frame = carried - flight_.back().time, reach = static_cast<double>(stride_) * frame,
                  fine = frame / 32;
-    Parabola path(flight_, -HUGE_VAL);
+    Parabola path(flight_, -HUGE_VAL, info_.drive->gravity);
     auto take_off = taken_off(path, reach, frame);
     if (!take_off) return;
     // At the first instants the plate may still have supported part of the weight. The second fit leaves them
     // out.
     if (flight_.end()[-2].time > *take_off) {
-      path = Parabola(flight_, *take_off);
+      path = Parabola(flight_, *take_off, info_.drive->gravity);
       take_off = taken_off(path, reach, frame);
       if (!take_off) return;
     }
@@ -216,7 +218,9 @@ class BedFlight : public Observable {
     // A bed that rested on the plate has h' = h'' = 0 at take-off. Noise separates the two zeros, or keeps h'
     // positive so that it has no zero. The later of the two zeros is then the best estimate.
     const auto rises = [&](double t) { return path.velocity(t) - plate(&Drive::velocity, t); };
-    const auto leaves = [&](double t) { return rises(t) > 0 && plate(&Drive::acceleration, t) < -1; };
+    const auto leaves = [&](double t) {
+      return rises(t) > 0 && plate(&Drive::acceleration, t) < -info_.drive->gravity;
+    };
     const double earliest = std::max(first - 2 * reach, landed_);
     double inside = first + reach;
     if (!thrown_)

@@ -19,7 +19,11 @@ constexpr double kMargin = 0.5;  // sigma, of the window: a bead reaches half it
 
 class PairCorrelation : public Observable {
  public:
-  explicit PairCorrelation(const AnalysisContext& context) : info_(context.info), g_(kBins) {}
+  explicit PairCorrelation(const AnalysisContext& context) : info_(context.info), g_(kBins) {
+    for (const Axis axis : {Axis::x, Axis::y, Axis::z})
+      if (info_.box.periodic(axis))
+        farthest_ = std::min(farthest_, info_.box.size()[static_cast<int>(axis)] / 2);
+  }
 
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
@@ -33,10 +37,11 @@ class PairCorrelation : public Observable {
     std::vector<std::size_t> references(kBins, 0), found(kBins, 0);
     for (std::size_t i = 0; i < frame.position.size(); ++i) {
       if (!frame.present(i) || !frame.position[i].allFinite()) continue;
-      const double depth = window.depth(frame.position[i]);
+      const double depth = std::min(window.depth(frame.position[i]), farthest_);
       if (!(depth >= kPairCorrelationWidth)) continue;
-      const std::size_t bins =
-          depth >= kPairCorrelationRange ? kBins : static_cast<std::size_t>(depth / kPairCorrelationWidth);
+      const std::size_t bins = depth >= kPairCorrelationRange - kRounding
+                                   ? kBins
+                                   : static_cast<std::size_t>(depth / kPairCorrelationWidth + kRounding);
       for (std::size_t b = 0; b < bins; ++b) ++references[b];
       pairs.for_each(i, [&](std::size_t, const Vec3& bond) {
         const auto b = static_cast<std::size_t>(bond.norm() / kPairCorrelationWidth);
@@ -61,7 +66,7 @@ class PairCorrelation : public Observable {
     const std::string none = "no frame has a bead that is farther than a bin from the edges of the bed";
     const std::string rule =
         "beads farther than r from the edges of the bed, density of the bed between its 0.5 and 99.5 "
-        "percentiles";
+        "percentiles; up to half a period, as farther pairs have several images";
     const auto scalar = [&](const char* name, double value, const char* unit, const std::string& convention,
                             const char* why_no_interval) {
       if (peak == kBins) return absent_result(name, none, kSource);
@@ -103,7 +108,9 @@ class PairCorrelation : public Observable {
                                     : 4 * std::numbers::pi / 3 * (std::pow(outer, 3) - std::pow(inner, 3));
   }
 
+  static constexpr double kRounding = 1e-9;
   const TrajectoryInfo& info_;
+  double farthest_ = kPairCorrelationRange;  ///< half of the shortest period, sigma
   std::vector<BlockAverage> g_;
 };
 

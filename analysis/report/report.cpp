@@ -65,9 +65,10 @@ std::string real_differences(const Comparison& c) {
   constexpr std::size_t kMostNamed = 5;
   const bool heights = heights_of(c.matches).size() > 1;
   std::vector<std::string> names;
-  std::size_t without_error = 0;
+  std::size_t without_error = 0, without_seeds = 0;
   for (const Difference& d : c.differences) {
     if (!d.in_errors()) ++without_error;
+    if (d.is_real() && !d.seeds) ++without_seeds;
     if (d.is_real())
       names.push_back(fmt::format("{} at {}", d.quantity, condition_text(c.matches[d.match], heights)));
   }
@@ -77,9 +78,18 @@ std::string real_differences(const Comparison& c) {
                        without_error > 0 ? fmt::format("; of {} no error is known", without_error) : "");
   const std::size_t n = names.size();
   if (n > kMostNamed) names.resize(kMostNamed);
-  return fmt::format("{} of the {} compared numbers really differ{}: {}{}.", n, c.differences.size(),
-                     n == 1 ? "s" : "", fmt::join(names, heights ? "; " : ", "),
-                     n > kMostNamed ? fmt::format(" and {} more", n - kMostNamed) : "");
+  std::string text =
+      fmt::format("{} of the {} compared numbers really differ{}: {}{}.", n, c.differences.size(),
+                  n == 1 ? "s" : "", fmt::join(names, heights ? "; " : ", "),
+                  n > kMostNamed ? fmt::format(" and {} more", n - kMostNamed) : "");
+  if (without_seeds > 0)
+    text += fmt::format(
+        " The error of {} contains no scatter between seeds, as there is one simulation of each start: other "
+        "seeds "
+        "may differ as much.",
+        without_seeds == n ? (n == 1 ? std::string("this") : "these")
+                           : fmt::format("{} of these", without_seeds));
+  return text;
 }
 
 std::string conclusion_of_sweep(const Comparison& c) {

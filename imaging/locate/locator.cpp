@@ -170,6 +170,7 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
   constexpr double kBehind = 1.75;
   if (options.refine.method == kOverlappingRefiner.word) judged.max_overlap = kBehind;
   judged.other_radii_px = refined.other_radii_px;
+  judged.pale = options.refine.pale;
   result.judged = judge(result.refined.beads, radius, grey.cols, grey.rows, judged);
   if (judged.drop_unlike && some_may_be_unlike(result.judged.beads)) {
     const std::vector<Detection> unlike =

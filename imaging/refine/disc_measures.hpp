@@ -16,6 +16,8 @@ void measure_disc(const Prepared& image, Detection& disc);
 double rough_interior(const Prepared& image, const Detection& disc);
 /// The smallest one that a refiner accepts of a proposal.
 inline constexpr double kMinInterior = 0.3;
+/// The same where pale discs are kept (RefineOptions::pale).
+inline constexpr double kMinPaleInterior = 0.15;
 
 /// Whether the centre of the disc is in a dark region that is too large for a bead.
 bool in_wall(const Prepared& image, const Detection& disc);

@@ -50,7 +50,7 @@ void FrameModel::add(const Proposal& p) {
   const double inside = rough_interior(image, b);
   if (in_wall(image, b)) {
     drop(b, Verdict::in_wall);
-  } else if (inside < kMinInterior) {
+  } else if (inside < (options.pale ? kMinPaleInterior : kMinInterior)) {
     drop(b, Verdict::bright_inside);
   } else {
     beads.push_back(b);

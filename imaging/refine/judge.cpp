@@ -17,7 +17,10 @@ Verdict verdict_on(const Detection& b, double radius_px, int width, int height, 
   const auto near = [&](double radius) { return std::abs(b.radius - radius) <= o.radius_tolerance * radius; };
   if (!near(radius_px) && std::none_of(o.other_radii_px.begin(), o.other_radii_px.end(), near))
     return Verdict::wrong_radius;
-  if (b.interior < o.min_interior) return Verdict::bright_inside;
+  // The inside of a pale disc is as pale as its rim; that of a void is brighter.
+  constexpr double kAsDarkAsRim = 0.7;
+  const double least = o.pale ? std::min(o.min_interior, kAsDarkAsRim * b.darkness) : o.min_interior;
+  if (b.interior < least) return Verdict::bright_inside;
   if (b.score < o.min_score) return Verdict::unexplained;
   if (b.x < -0.5 || b.y < -0.5 || b.x >= width - 0.5 || b.y >= height - 0.5) return Verdict::outside;
   return Verdict::bead;

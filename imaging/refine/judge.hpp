@@ -14,6 +14,7 @@ struct JudgeOptions {
   std::vector<double> other_radii_px;  ///< further sizes of beads
   double min_interior = 0.35;          ///< median darkness inside R/2
   double min_score = 0.5;              ///< Detection::score
+  bool pale = false;                   ///< a pale disc (RefineOptions) is as pale inside as at its rim
   double max_overlap = 0.25;  ///< largest overlap of two discs, in radii; beyond it the worse is dropped
   double tracer_below = 0.8;  ///< a tracer's interior is below this fraction of the median
   /// Discs that are no beads are dropped (unlike_discs.hpp). For one size that the picture gave: beads of a

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -11,8 +12,6 @@ namespace twincell::imaging {
 
 namespace {
 
-// Smallest mean residual of a disc that was not proposed; half that of the palest tracer.
-constexpr double kMissedDarkness = 0.35;
 // A missed disc has a given size if the residual inside kInner R averages kFilled of the usual darkness.
 constexpr double kInner = 0.85, kFilled = 0.7;
 
@@ -50,12 +49,12 @@ cv::Mat1f block_residuals(const FrameModel& frame, Blocks grid) {
 }
 
 /// Blocks dark enough for a disc, the darkest first.
-std::vector<Proposal> dark_blocks(const cv::Mat1f& residuals, Blocks grid) {
+std::vector<Proposal> dark_blocks(const cv::Mat1f& residuals, Blocks grid, double darkness) {
   std::vector<Proposal> dark;
   for (int y = 0; y < residuals.rows; ++y)
     for (int x = 0; x < residuals.cols; ++x)
       if (const double mean = static_cast<double>(residuals(y, x)) / (9 * grid.side * grid.side);
-          mean >= kMissedDarkness)
+          mean >= darkness)
         dark.push_back({grid.middle(x), grid.middle(y), mean});
   sort_by_score(dark);
   return dark;
@@ -74,9 +73,16 @@ void mark_known(cv::Mat1b& known, Blocks grid, const FrameModel& frame, const De
     }
 }
 
-/// Mean residual within kInner of a radius; the sum and the number of pixels.
+/// Residual within kInner of a radius: sum, sum of squares, and number of pixels.
 struct Residual {
-  double left = 0, pixels = 0;
+  double left = 0, squares = 0, pixels = 0;
+  /// Whether it is about the same everywhere, as inside a pale disc; in dust and in shadows it is not.
+  [[nodiscard]] bool is_even() const {
+    constexpr double kEven = 0.3, kFewest = 5;
+    if (pixels < kFewest || left <= 0) return false;
+    const double mean = left / pixels;
+    return squares / pixels - mean * mean < kEven * kEven * mean * mean;
+  }
 };
 
 Residual residual_within(const FrameModel& frame, const Proposal& p, double radius) {
@@ -86,9 +92,20 @@ Residual residual_within(const FrameModel& frame, const Proposal& p, double radi
        ++y)
     for (int x = std::max(0, cvRound(p.x) - reach); x <= std::min(frame.size.width - 1, cvRound(p.x) + reach);
          ++x)
-      if (std::hypot(x - p.x, y - p.y) < radius && frame.picture(y, x) < kUnseen)
-        r.left += static_cast<double>(frame.picture(y, x) - frame.model(y, x)), ++r.pixels;
+      if (std::hypot(x - p.x, y - p.y) < radius && frame.picture(y, x) < kUnseen) {
+        const auto left = static_cast<double>(frame.picture(y, x) - frame.model(y, x));
+        r.left += left, r.squares += left * left, ++r.pixels;
+      }
   return r;
+}
+
+/// Whether a pale residual may be a disc: it is even inside, and neither cut by the frame nor next to a wall,
+/// whose light leaves such residuals.
+bool may_be_pale_disc(const FrameModel& frame, const Proposal& p) {
+  constexpr double kEvenInside = 0.6, kWhole = 0.7;  // of R; of the disc's area
+  const double r = p.radius;
+  return residual_within(frame, p, kEvenInside * r).is_even() &&
+         residual_within(frame, p, r).pixels > kWhole * std::numbers::pi * r * r;
 }
 
 /// The largest size for which the residual picture is dark at that position; otherwise the smallest size.
@@ -112,7 +129,7 @@ bool is_known(const FrameModel& frame, const Proposal& p) {
 
 }  // namespace
 
-bool add_missed(FrameModel& frame) {
+bool add_missed(FrameModel& frame, double darkness) {
   if (frame.stale) frame.render();
   const Blocks grid{std::max(1, cvRound(0.4 * frame.priors.smallest()))};
   const cv::Mat1f residuals = block_residuals(frame, grid);
@@ -120,9 +137,10 @@ bool add_missed(FrameModel& frame) {
   cv::Mat1b known = cv::Mat1b::zeros(residuals.size());
   for (const Detection& b : frame.beads) mark_known(known, grid, frame, b);
   const std::size_t before = frame.beads.size();
-  for (Proposal& p : dark_blocks(residuals, grid)) {
+  for (Proposal& p : dark_blocks(residuals, grid, darkness)) {
     if (known(cvRound(grid.index(p.y)), cvRound(grid.index(p.x))) != 0) continue;
     p.radius = missed_radius(frame, p);
+    if (p.score < kMissedDarkness && !may_be_pale_disc(frame, p)) continue;
     const std::size_t had = frame.beads.size();
     frame.add(p);
     if (frame.beads.size() > had) mark_known(known, grid, frame, frame.beads.back());

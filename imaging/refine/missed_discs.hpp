@@ -7,10 +7,15 @@
 
 namespace twincell::imaging {
 
+/// Smallest mean residual of a disc that was not proposed; half that of usual tracers.
+inline constexpr double kMissedDarkness = 0.35;
+
 /// Adds discs inside the frame that were not proposed. Such a disc leaves a dark disc in the residual
-/// picture, of a mean darkness of at least 0.35 over 3 x 3 blocks of pixels that are together about as wide
-/// as the disc. Where a known disc lies, a residual is a misfit of that disc. \returns whether any was added
-bool add_missed(FrameModel& frame);
+/// picture, of a mean darkness of at least `darkness` over 3 x 3 blocks of pixels that are together about as
+/// wide as the disc. Where a known disc lies, a residual is a misfit of that disc. \returns whether any was
+/// added
+/// \param darkness below kMissedDarkness also discs that are paler, if they are as pale everywhere
+bool add_missed(FrameModel& frame, double darkness);
 
 /// Adds discs outside the frame that darken its border (out_of_frame_discs.hpp).
 /// \param blur_known while it is not, a rim with more blur than assumed looks like a disc of which only the

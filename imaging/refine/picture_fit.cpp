@@ -14,7 +14,9 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr int kLeastSweeps = 2;        // before the fit can have converged
+constexpr int kLeastSweeps = 2;  // before the fit can have converged
+// Smallest mean residual of a pale disc that was not proposed, seen once its neighbours are in place.
+constexpr double kMissedPale = 0.22;
 constexpr double kBlurSettled = 0.03;  // of s^2: displaces no touching bead by more than its error
 
 /// Sorts proposals into bands as high as a disc, each from left to right, so that a disc's pixels are in the
@@ -113,14 +115,16 @@ void complete(FrameModel& frame, RingFit& fit, int sweep, const SweepResult& mov
   if (sweep <= 3 && add_out_of_frame(frame, sweep > 1 && moved.blur < kBlurSettled)) fit.beads_changed();
   // Where a disc of the wrong size was dropped, there may be one of another size.
   const bool gap = moved.pruned && frame.priors.several_sizes() && sweep <= kSweepsBeforeTrimming;
-  if ((sweep <= 2 || gap) && add_missed(frame)) fit.beads_changed();
+  if ((sweep <= 2 || gap) &&
+      add_missed(frame, sweep == 1 || !frame.options.pale ? kMissedDarkness : kMissedPale))
+    fit.beads_changed();
 }
 
 /// Sweeps until convergence, with corrections of the light and searches for missed discs between them.
 Refined fit_picture(const Prepared& image, const std::vector<Proposal>& proposals, double radius_px,
                     const RefineOptions& options, bool fast) {
   FrameModel frame(image, radius_px, options);
-  const int most_sweeps = fast ? sweeps_of_fast(frame) : options.sweeps;
+  int most_sweeps = fast ? sweeps_of_fast(frame) : options.sweeps;
   for (const Proposal& p : by_place(proposals, 2 * radius_px)) frame.add(p);
   frame.expect_as_dark_as_seen();
   RingFit fit(frame);
@@ -139,6 +143,12 @@ Refined fit_picture(const Prepared& image, const std::vector<Proposal>& proposal
     if (ripple) {
       --ripples_left;
       fit.picture_changed();
+      continue;
+    }
+    // "fast" takes a second sweep if discs were not proposed, such as pale ones that touch dark ones.
+    if (fast && sweep == most_sweeps && sweep == 1 && add_missed(frame, kMissedDarkness)) {
+      fit.beads_changed();
+      most_sweeps = 2;
       continue;
     }
     if (convergence.reached() || sweep == most_sweeps) {

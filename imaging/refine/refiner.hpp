@@ -27,6 +27,8 @@ struct RefineOptions {
   double blur_px = 0;                  ///< edge blur s; 0: fitted
   double radius_spread = 0.06;         ///< prior: relative scatter of the radii about the given one, > 0
   std::vector<double> other_radii_px;  ///< radii of discs of further sizes, with the same scatter
+  bool pale =
+      false;  ///< keep discs of less than 0.4 of the usual darkness that are otherwise as the others are
 };
 
 /// Result of a refinement.

@@ -15,7 +15,12 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr double kMinDarkness = 0.4;  // a fitted disc paler than that is rejected
+// A disc paler than kMinDarkness is rejected, unless pale ones are wanted and it explains its ring as well as
+// the sharpest beads do, once positions and blur are known.
+constexpr double kMinDarkness = 0.4, kPalest = 0.2;
+constexpr double kClear = 0.85;     // Detection::score
+constexpr double kPaleSize = 0.06;  // largest relative difference of R
+constexpr int kBlurIsKnown = 4;     // sweeps
 // A disc whose radius differs from all sizes by this much, relative, is several discs fitted as one.
 constexpr double kSizeTolerance = 0.2;
 // Number of sweeps that estimate the scatter of R and a from disc to disc.
@@ -30,6 +35,12 @@ constexpr double kLeftByFirst = 0.08;
 /// Residual variance relative to that of the noise, at least 1: uncertainties are enlarged by it.
 double excess(const RingSums& s) {
   return s.pixels > kFitted ? std::max(1.0, s.squares / (s.pixels - kFitted)) : HUGE_VAL;
+}
+
+/// Share of the ring's variance that the disc explains.
+double explained_share(const RingSums& s) {
+  const double total = s.pixels > 0 ? s.seen_squares - s.seen * s.seen / s.pixels : 0;
+  return total > 0 ? std::clamp(1 - s.residual_squares / total, 0.0, 1.0) : 0;
 }
 
 }  // namespace
@@ -123,7 +134,11 @@ std::optional<Verdict> RingFit::objection_to(std::size_t bead) const {
   const Detection& b = frame_.beads[bead];
   const double size = frame_.priors.nominal_radius(b.radius);
   const double out = size + std::sqrt(frame_.blur.variance);
-  if (b.darkness < kMinDarkness) return Verdict::pale;
+  const bool settled = sweeps_ >= kBlurIsKnown;
+  if (b.darkness < kMinDarkness &&
+      (!frame_.options.pale || b.darkness < kPalest ||
+       (settled && (std::abs(b.radius - size) > kPaleSize * size || explained_share(sums_[bead]) < kClear))))
+    return Verdict::pale;
   if (frame_.priors.several_sizes() && sweeps_ >= kSizeSettles &&
       std::abs(b.radius - size) > kSizeTolerance * size)
     return Verdict::wrong_radius;
@@ -250,8 +265,7 @@ void RingFit::measure(Detection& b, const RingSums& s, const Normal& by_noise, d
   b.sigma_y = std::sqrt(covariance(kY, kY) + unsettled * unsettled);
   b.sigma_radius = std::sqrt(covariance(kR, kR));
   b.residual = n > 0 ? std::sqrt(s.residual_squares / n) : std::numeric_limits<double>::infinity();
-  const double total = n > 0 ? s.seen_squares - s.seen * s.seen / n : 0;
-  b.score = total > 0 ? std::clamp(1 - s.residual_squares / total, 0.0, 1.0) : 0;
+  b.score = explained_share(s);
   b.ring_share = n / ring_area(b.radius, frame_.ring());
   measure_disc(frame_.image, b);
 }

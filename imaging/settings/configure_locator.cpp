@@ -34,6 +34,26 @@ LocatorOptions at_rim(const cv::Mat& frame, LocatorOptions settled, const std::v
   return locate(frame, rim).beads.size() >= beads.size() ? rim : settled;
 }
 
+/// The settings, with pale discs if the frame shows a second population of the beads, as of pale tracers: at
+/// least three discs of one darkness, below that of which discs usually count.
+LocatorOptions with_pale_discs(const cv::Mat& frame, const LocatorOptions& settled) {
+  constexpr double kUsual = 0.4;   // darkness
+  constexpr double kAlike = 0.12;  // largest scatter of the darkness, relative
+  constexpr std::size_t kFewest = 3;
+  if (model_of(settled.refine) != DiscModel::plain) return settled;
+  LocatorOptions options = settled;
+  options.refine.pale = true;
+  const std::vector<Detection> with = locate(frame, options).beads;
+  std::vector<double> pale;
+  for (const Detection& b : with)
+    if (b.darkness < kUsual) pale.push_back(b.darkness);
+  if (pale.size() < kFewest || with.size() < locate(frame, settled).beads.size() + pale.size())
+    return settled;
+  const double typical = upper_median(pale);
+  for (double& d : pale) d = std::abs(d - typical);
+  return 1.4826 * upper_median(std::move(pale)) < kAlike * typical ? options : settled;
+}
+
 /// Examines frames 0, 1, 2, 4, ... until one shows a bead with the settings found in it. The frames are few,
 /// because the search in one frame takes as long as locating many frames.
 LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given, int threads) {
@@ -58,6 +78,7 @@ LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given, in
     if (beads.empty()) continue;
     if (given.diameter_px <= 0 && model_of(settled.refine) == DiscModel::shared_profile)
       settled = at_rim(*frame, std::move(settled), beads);
+    settled = with_pale_discs(*frame, settled);
     return {settled, static_cast<std::int64_t>(k), std::move(choice)};
   }
   if (!first && given.diameter_px <= 0) {
@@ -85,7 +106,7 @@ LocatorConfiguration configure_locator(FramesAhead& frames, const LocatorOptions
   if (given.diameter_px <= 0 || !given.polarity_known) return search(frames, given, threads);
   LocatorOptions found = given;
   found.preprocess.contrast = find_contrast(*first, given);
-  return {found, 0, {}};
+  return {with_pale_discs(*first, found), 0, {}};
 }
 
 }  // namespace twincell::imaging

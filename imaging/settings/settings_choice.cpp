@@ -50,6 +50,17 @@ double area_of(const TriedSettings& tried) {
   return static_cast<double>(tried.beads) * tried.settings.diameter_px * tried.settings.diameter_px;
 }
 
+/// Whether `other` explains more discs of the same size than `first`, and each at least as well: then `first`
+/// loses discs, as plain ones with bright spots.
+bool finds_more_of_the_same(const TriedSettings& other, const TriedSettings& first) {
+  constexpr double kMore = 1.05, kSameSize = 0.1;
+  return other.settings.bright == first.settings.bright &&
+         same_sizes(other.settings, first.settings, kSameSize) &&
+         static_cast<double>(other.beads) > kMore * static_cast<double>(first.beads) &&
+         other.evidence * static_cast<double>(first.beads) >
+             first.evidence * static_cast<double>(other.beads);
+}
+
 /// The rejected candidates that are discs, of another size or outside the frame.
 std::vector<Detection> other_discs(const std::vector<Detection>& dropped) {
   constexpr double kGood = 0.8;  // least score
@@ -180,7 +191,7 @@ SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
       if (first->evidence > best->evidence - kDiscs * share)
         reason = is_overlapping(*best) ? "a further layer gains less than three discs"
                                        : "a further size gains less than three discs";
-    } else if (clearly * first->evidence > best->evidence) {
+    } else if (clearly * first->evidence > best->evidence && !finds_more_of_the_same(*best, *first)) {
       reason = fmt::format("less than {:g} times the evidence of the preferred ones{}", clearly,
                            clearly > kClearly ? ", for the gaps of a crystal are as alike as its discs" : "");
     } else if (area_of(*first) > kTimesArea * area_of(*best)) {

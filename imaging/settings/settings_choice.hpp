@@ -46,11 +46,11 @@ std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const Loca
 
 /// Sorts by evidence and puts the chosen ones first. They are those with the largest evidence, unless the
 /// first in the list, which are preferred, suffice: those with as many sizes must have 1.25 times their
-/// evidence and at least half of the area of their discs, and those with further sizes must gain the share of
-/// three discs. The evidence knows neither that gaps of a crystal are not discs nor which fit is the most
-/// accurate; the order of the list does. Settings whose discs are not round (is_round) are never
-/// chosen. Each of the others that has more evidence than the chosen ones, or is not round, says why it was
-/// not chosen.
+/// evidence (or more discs of the same size, each explained at least as well) and at least half of the area
+/// of their discs, and those with further sizes must gain the share of three discs. The evidence knows
+/// neither that gaps of a crystal are not discs nor which fit is the most accurate; the order of the list
+/// does. Settings whose discs are not round (is_round) are never chosen. Each of the others that has more
+/// evidence than the chosen ones, or is not round, says why it was not chosen.
 /// \param tried the preferred ones first; those without positive evidence are never chosen
 /// \param clearly the factor 1.25
 /// \returns none chosen if the largest evidence of round discs is below 5 nats a disc, or below half of that

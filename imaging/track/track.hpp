@@ -11,6 +11,7 @@
 #include "imaging/link/link.hpp"
 #include "imaging/locate/locator.hpp"
 #include "imaging/preprocess/region.hpp"
+#include "imaging/stack/chosen_frames.hpp"
 #include "imaging/stack/frame_source.hpp"
 #include "imaging/track/link_detections.hpp"
 
@@ -22,6 +23,7 @@ struct TrackedStack : LinkedDetections {
   int width_px = 0, height_px = 0;
   std::size_t outside_cell = 0;  ///< detections excluded because they are outside the cell
   std::size_t wrong_radius = 0;  ///< candidates excluded as discs of another size
+  FrameRange range = {};         ///< numbers of the frames, which become the steps of the trajectory
   bool has_errors = true;        ///< the standard errors of the positions are known
   /// Says that no bead is about one sigma wide (10 %); empty if one is, or the scale is unknown.
   [[nodiscard]] std::string scale_doubt(const CellDescription& cell) const;

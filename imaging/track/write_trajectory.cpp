@@ -126,7 +126,7 @@ void write_trajectory(const TrackedStack& stack, const TrackPlan& plan, Trajecto
     const auto number = static_cast<std::int64_t>(f);
     const FramePhase at = stack.phases.at(number);
     if (f > 0 && at.interval == 0) continue;
-    frame.step = number;
+    frame.step = stack.range.number(number);
     frame.phase = at.phase;
     frame.cycle = at.cycle;
     frame.time = static_cast<double>(f);

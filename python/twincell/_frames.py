@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Sequence
 
 import numpy as np
@@ -20,6 +21,7 @@ class Frames(Sequence):
     def __init__(self, path: str | os.PathLike, _range: range | None = None):
         self.path = os.fspath(path)
         self._source = None
+        self._lock = threading.RLock()
         self._open()
         self._range = range(self._source.announced) if _range is None else _range
 
@@ -51,15 +53,16 @@ class Frames(Sequence):
         return len(self._range)
 
     def _at(self, number: int) -> np.ndarray:
-        if number < self._read - 1:
-            self._open()
-        while self._read <= number:
-            frame = self._source.read()
-            if frame is None:
-                raise IndexError(f"{self.path}: the stack has {self._read} frames, not {number + 1}.")
-            self._last = frame
-            self._read += 1
-        return self._last
+        with self._lock:
+            if number < self._read - 1:
+                self._open()
+            while self._read <= number:
+                frame = self._source.read()
+                if frame is None:
+                    raise IndexError(f"{self.path}: the stack has {self._read} frames, not {number + 1}.")
+                self._last = frame
+                self._read += 1
+            return self._last
 
     def __getitem__(self, index):
         if isinstance(index, slice):

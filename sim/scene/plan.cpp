@@ -404,6 +404,19 @@ std::string Plan::law_names() const {
   return name;
 }
 
+namespace {
+
+/// Largest speed of a bead at the start: those of a file state theirs, drawn ones have components up to
+/// start.velocity_scale.
+double start_speed(const Scene& s, const std::vector<Bead>& beads) {
+  double largest = start_row(s.start).draws ? std::numbers::sqrt2 * s.velocity_scale : 0;
+  if (start_row(s.start).from_file)
+    for (const Bead& b : beads) largest = std::max(largest, std::hypot(b.vx, b.vy, b.vz));
+  return largest;
+}
+
+}  // namespace
+
 Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
   // Laws: what the scene selects, reduced to what has an influence.
   Plan plan;
@@ -438,7 +451,10 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
   // Bounds: displacement per step, overlap, and the force at the overlap bound.
   plan.travel_bound = kTravelBound * 2 * std::min_element(sizes.begin(), sizes.end(), smaller)->radius;
   plan.overlap_bound = s.overlap_bound * 2 * plan.usual_radius;
-  const double speed = std::max({2 * s.drive.velocity_bound(), std::sqrt(2 * s.g()), 1e-3});
+  double strongest = 1;  // largest factor on the amplitude in the schedule
+  for (const auto& [cycle, factor] : s.envelope.points) strongest = std::max(strongest, factor);
+  const double speed =
+      std::max({2 * strongest * s.drive.velocity_bound(), std::sqrt(2 * s.g()), start_speed(s, beads), 1e-3});
   const auto force = [&](const auto& law) { return law.largest_force(plan.overlap_bound); };
   plan.largest_force = std::visit(force, plan.bead.normal);
   for (const ContactLaws& laws : plan.wall_laws)
@@ -472,8 +488,6 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
     throw ConfigError(s.where("drive"),
                       fmt::format("a cycle of {:.3g} t0 makes steps of {:.3g} t0, the bound is {:g}.",
                                   s.drive.period(), plan.dt, kShortestStep));
-  double strongest = 1;  // largest factor on the amplitude in the schedule
-  for (const auto& [cycle, factor] : s.envelope.points) strongest = std::max(strongest, factor);
   if (const double travel = strongest * s.drive.velocity_bound() * plan.dt; !(travel <= plan.travel_bound))
     throw ConfigError(s.where("drive"),
                       fmt::format("the plate moves {:.3g} sigma in one step, the bound is {:g}; raise "

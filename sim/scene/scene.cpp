@@ -673,9 +673,41 @@ void assign(Config& config, const std::vector<std::string>& assignments) {
   for (const auto& assignment : assignments) config.assign(assignment);
 }
 
+/// Magnitude of `cell.gravity`, in units of scale.gravity_m_s2; 1 if it is not stated.
+double stated_gravity(const Config& config) {
+  const Section root = config.root();
+  if (!root.has("cell") || !root.section("cell").has("gravity")) return 1;
+  const Section cell = root.section("cell");
+  if (!cell.is_list("gravity")) return cell.number("gravity").value_or(1);
+  const bool planar = cell.integer("dimension").value_or(2) == 2;
+  double squares = 0;
+  const std::vector<double> components = cell.numbers("gravity", planar ? 2 : 3).value();
+  for (const double g : components) squares += g * g;
+  return std::sqrt(squares);
+}
+
+/// Gamma refers to the gravity of the cell, and so do accelerations in m/s^2.
+void refer_to_gravity(Config& config) {
+  for (const std::string table : {"drive", "drive.ramp"}) {
+    const std::string key = table + ".peak_acceleration_m_s2";
+    Section at = config.root();
+    bool stated = at.has("drive");
+    if (stated) at = at.section("drive");
+    if (stated && table != "drive") {
+      stated = at.has("ramp");
+      if (stated) at = at.section("ramp");
+    }
+    if (!stated || !at.has("peak_acceleration_m_s2")) continue;
+    const double gravity = stated_gravity(config);
+    if (gravity > 0 && gravity != 1)
+      config.restate(key, key, at.number_in("peak_acceleration_m_s2", 0).value() / gravity);
+  }
+}
+
 Scene resolve(Config config, const std::string& name, const std::vector<std::string>& assignments,
               const std::filesystem::path& folder) {
   assign(config, assignments);
+  refer_to_gravity(config);
   reduce_units(config);
   const Included included = include_calibration(config, name, Includer::scene);
   const Section root = config.root();

@@ -118,10 +118,13 @@ Start from_trajectory(const Scene& scene, Progress& progress) {
   Frame frame;
   file.read(scene.frame, frame);
   if (scene.in_motion) return start_in_motion(scene, info, frame);
-  // Along the drive axis, positions are relative to the plate, which starts at its mean position.
+  // Along the axes of the drive, positions are relative to the cell, which starts at its mean position.
   Vec3 origin(info.box.lower.x(), info.box.lower.y(), 0);
   if (!std::isnan(frame.plate_height))
     origin += frame.plate_height * Vec3::Unit(static_cast<int>(info.drive ? info.drive->axis : Axis::z));
+  if (info.drive && frame.phase >= 0 && info.phases_per_cycle > 0)
+    origin.x() +=
+        info.drive->horizontal_displacement(static_cast<double>(frame.phase) / info.phases_per_cycle);
   Start start;
   for (std::size_t i = 0; i < frame.position.size(); ++i) {
     if (!frame.present(i)) continue;

@@ -24,6 +24,15 @@ def test_frames_are_lazy_and_those_of_another_reader():
         frames[len(files)]
 
 
+def test_frames_are_right_in_several_threads():
+    from concurrent.futures import ThreadPoolExecutor
+    frames = twincell.open_frames(DEMO)
+    right = [frames[i].copy() for i in range(len(frames))]
+    with ThreadPoolExecutor(4) as threads:
+        got = list(threads.map(lambda i: frames[i].copy(), range(len(frames))))
+    assert all(np.array_equal(a, b) for a, b in zip(right, got))
+
+
 def test_columns_are_views_that_keep_their_memory_alive(sim_file):
     h5py = pytest.importorskip("h5py", reason="python3-h5py is missing")
     t = twincell.Trajectory.open(sim_file)
@@ -189,7 +198,13 @@ def test_observables_on_arrays():
     assert len(bonds["i"]) == 6 * len(lattice) and np.allclose(np.linalg.norm(bonds["bond"], axis=1), 1)
     # Open sides: a corner bead has fewer neighbours.
     assert twincell.coordination(lattice).min() in (2, 3)
-    assert np.isnan(twincell.hexatic_order(np.zeros((1, 2)))).all()
+    alone = twincell.hexatic_order(np.zeros((1, 2)))
+    assert np.isnan(alone.real).all() and np.isnan(alone.imag).all()
+    for words in ("abc", [[0, 0], [1]]):
+        with pytest.raises(ValueError, match="points: is no array of numbers"):
+            twincell.hexatic_order(words)
+    with pytest.raises(ValueError, match="box: must be a Box, None, or the lengths"):
+        twincell.hexatic_order(lattice, 10.0)
 
 
 def test_mdanalysis_reads_the_same(tracked):
@@ -246,6 +261,34 @@ def test_numbers_that_no_file_can_hold_are_refused(own, sentence):
     with pytest.raises(twincell.InputError) as e:
         twincell.Trajectory.from_arrays(own.pop("positions", np.zeros((1, 2, 2))), **own)
     assert sentence in str(e.value)
+
+
+@pytest.mark.parametrize("own, sentence", [
+    ({"phase": [0, 0.5], "cycle": [0, 0]}, "phase: value 1 is 0.5; whole numbers"),
+    ({"step": [0, 1.5]}, "step: value 1 is 1.5"),
+    ({"tracers": [0, 256]}, "tracers: value 1 is 256"),
+    ({"tracers": [0, float("nan")]}, "tracers: value 1 is nan"),
+    ({"time": [0.0, float("nan")]}, "time: is nan in frame 1; times must be finite and increase"),
+    ({"time": [1.0, 1.0]}, "time: is 1 in frame 1"),
+    ({"time": ["a", "b"]}, "time: is no list of numbers"),
+    ({"box": twincell.Box((0, 0, 0), (6, 6, 6)), "positions": np.arange(12.0).reshape(2, 2, 3) / 3},
+     "box: is planar, but the positions are not"),
+])
+def test_arrays_that_say_something_else_are_refused(own, sentence):
+    with pytest.raises(ValueError) as e:
+        twincell.Trajectory.from_arrays(own.pop("positions", np.zeros((2, 2, 2))), **own)
+    assert sentence in str(e.value)
+
+
+def test_wrapped_beads_are_unwrapped():
+    rng = np.random.default_rng(3)
+    walk = 5 + np.cumsum(rng.normal(0, 0.5, size=(40, 30, 2)), axis=0)
+    box = twincell.Box((0, -0.5, 0), (10, 0.5, 10), ("periodic", "open", "periodic"))
+    free = twincell.Trajectory.from_arrays(walk, box=box)
+    wrapped = twincell.Trajectory.from_arrays(walk % 10, box=box)
+    moved = [np.diff(np.asarray(t.positions), axis=0) for t in (free, wrapped)]
+    assert np.allclose(moved[0], moved[1], atol=1e-12)
+    assert np.abs(np.diff(walk % 10, axis=0)).max() > 5
 
 
 def test_a_foreign_file_is_not_replaced(tmp_path, sim_file):

@@ -78,6 +78,46 @@ TEST(Scene, ComplaintsNameLineKeyValueAndBound) {
                    "scene.toml:3:1: drive: two of amplitude, omega,");
 }
 
+// Gamma refers to the gravity of the cell, and so does an acceleration: 19.62 m/s^2 at g/2 = 4.905 m/s^2
+// is 4.
+TEST(Scene, AccelerationsReferToTheGravityOfTheCell) {
+  const auto drive = [](const std::string& gravity, const std::string& strength) {
+    return read_scene_text("preset = \"fortini-huang-2015\"\ncell.gravity = " + gravity +
+                               "\n[beads]\ncount = 9\n[drive]\nfrequency_hz = 11.0\n" + strength +
+                               "\n[scale]\nsigma_mm = 2.0\ngravity_m_s2 = 9.81\n",
+                           "s")
+        .drive;
+  };
+  EXPECT_NEAR(drive("1", "peak_acceleration_m_s2 = 19.62").gamma(), 2, 1e-12);
+  EXPECT_NEAR(drive("0.5", "peak_acceleration_m_s2 = 19.62").gamma(), 4, 1e-12);
+  EXPECT_NEAR(drive("[0.3, -0.4]", "peak_acceleration_m_s2 = 19.62").gamma(), 4, 1e-12);
+  EXPECT_EQ(drive("0.5", "peak_acceleration_m_s2 = 19.62").amplitude,
+            drive("1", "peak_acceleration_m_s2 = 19.62").amplitude);
+  EXPECT_NEAR(drive("0.5", "ramp.peak_acceleration_m_s2 = 9.81\ngamma = 1").ramp->to.amplitude,
+              drive("0.5", "gamma = 2").amplitude, 1e-12);
+  // Contradictions are told in the numbers that were written.
+  expect_refusal<ConfigError>([&] { (void)drive("0.5", "amplitude_mm = 2.0\ngamma = 3.0"); },
+                              "gamma = 3 contradicts the other numbers, from which it would be 1.9");
+}
+
+// A gas without drive and gravity is as fast as its start.
+TEST(Scene, TheStepFollowsTheSpeedsOfTheStart) {
+  const auto step = [](const std::string& speed) {
+    const Scene s = read_scene_text(
+        "beads.count = 20\n[cell]\nwidth = 12.0\nheight = 12.0\nsides = \"periodic\"\nbottom = "
+        "\"periodic\"\ngravity = "
+        "0.0\n[contact]\nnormal = \"hertz\"\nyoungs_modulus = 1e6\npoisson_ratio = 0.3\nviscous_time = "
+        "0.0\ntangential = "
+        "\"none\"\n[drive]\namplitude = 0.0\nomega = 1.0\n[start]\nkind = \"random\"\nvelocity_scale = " +
+            speed + "\n",
+        "s");
+    return make_plan(s).shortest().time;
+  };
+  // The duration of a Hertzian contact falls as v^-1/5.
+  EXPECT_NEAR(step("1.0") / step("32.0"), 2, 1e-6);
+  EXPECT_LT(step("5.0"), step("1.0"));
+}
+
 TEST(Scene, H21_NumbersThatCannotBe) {
   for (const char* key :
        {"cell.width", "cell.height", "cell.gravity", "cell.tilt", "cell.side_tilt", "cell.plate_drag",

@@ -25,6 +25,7 @@ using rendered::Picture;
 struct Pale {
   double contrast, snr;
   bool touching;
+  int opaque_of_ten = 0;  ///< discs that absorb all light; the others have `contrast`
 };
 
 Picture picture_of(const Pale& c) {
@@ -36,7 +37,8 @@ Picture picture_of(const Pale& c) {
     p.discs = rendered::deposited(radii, {10, 0, p.width - 20.0, p.height - 10.0}, random);
   else
     p.discs = rendered::sparse(radii, {5, 5, p.width - 10.0, p.height - 10.0}, random);
-  for (rendered::Disc& d : p.discs) d.contrast = c.contrast;
+  for (std::size_t k = 0; k < p.discs.size(); ++k)
+    p.discs[k].contrast = static_cast<int>(k % 10) < c.opaque_of_ten ? 1 : c.contrast;
   return p;
 }
 
@@ -84,6 +86,29 @@ TEST_P(PaleDiscs, AreFoundAtAGivenSize) {
   options.diameter_px = 15;
   expect_at_the_bound(look(GetParam(), options));
 }
+
+// One sweep of "fast" would lose discs that the votes do not propose.
+TEST(PaleTracersInOneSweep, AreFound) {
+  LocatorOptions options;
+  options.refine.method = "fast";
+  const Marks::Summary m = look({0.6, 51, true, 9}, options);
+  EXPECT_EQ(m.found, m.beads);
+  EXPECT_EQ(m.invented, 0U);
+}
+
+// Pale tracers among opaque beads, as dyed or hollow ones.
+class PaleTracers : public PaleDiscs {};
+
+TEST_P(PaleTracers, AreFoundWithoutOptions) {
+  expect_at_the_bound(look(GetParam(), {}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Contrasts, PaleTracers,
+                         testing::Values(Pale{0.4, 51, true, 9}, Pale{0.3, 51, false, 9}),
+                         [](const auto& tested) {
+                           return (tested.param.touching ? "touching" : "apart") +
+                                  std::to_string(static_cast<int>(100 * tested.param.contrast + 0.5));
+                         });
 
 INSTANTIATE_TEST_SUITE_P(Contrasts, PaleDiscs,
                          testing::Values(Pale{0.3, 51, true}, Pale{0.2, 164, false}, Pale{0.1, 164, false}),

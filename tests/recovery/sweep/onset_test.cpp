@@ -6,6 +6,8 @@
 
 #include <cmath>
 #include <random>
+#include <string>
+#include <vector>
 
 namespace twincell::sweep {
 namespace {
@@ -63,6 +65,36 @@ TEST(Onset, IntervalsCoverAsOftenAsTheySay) {
   const Onset onset = Search{.mu = 2, .w = 0.1, .runs = 60}.run(random);
   ASSERT_TRUE(onset.low && onset.high);
   EXPECT_LT(*onset.high - *onset.low, 0.5);
+}
+
+// A result that falls with the key has no onset, however the runs were placed; a rising one is never said to
+// fall.
+TEST(Onset, AFallingAnswerIsNoOnset) {
+  std::mt19937_64 random(5);
+  int fell = 0, rose = 0;
+  for (int k = 0; k < 40; ++k) {
+    std::vector<Trial> falling, rising;
+    for (int i = 0; i < 24; ++i) {
+      const double x = 1 + 2 * (i + 0.5) / 24, p = 1 / (1 + std::exp((x - 2) / 0.1));
+      falling.push_back({x, std::uniform_real_distribution<>(0, 1)(random) < p});
+      rising.push_back({x, !falling.back().yes});
+    }
+    const Onset none = estimate_onset(falling, 1, 3, 0.2);
+    fell += none.falls ? 1 : 0;
+    EXPECT_FALSE(none.falls && (none.value || none.low || none.high));
+    rose += estimate_onset(rising, 1, 3, 0.2).falls ? 0 : 1;
+  }
+  EXPECT_EQ(fell, 40);
+  EXPECT_EQ(rose, 40);
+  // As a search places them: the first runs rise nowhere, and the search ends.
+  std::vector<Trial> trials;
+  Onset onset = estimate_onset(trials, 1, 3, 0.2);
+  while (trials.size() < 60 && !settled(onset, 1, 3, 0.2)) {
+    for (const double x : next_places(onset, 1, 3, 0.2, 3)) trials.push_back({x, x < 2});
+    onset = estimate_onset(trials, 1, 3, 0.2);
+  }
+  EXPECT_TRUE(onset.falls) << onset.text();
+  EXPECT_NE(onset.text().find("none, as the answers change from yes to no: yes in "), std::string::npos);
 }
 
 TEST(Onset, ASingleFlipIsNoOnset) {

@@ -79,6 +79,9 @@ TEST(LocatedTable, WhatIsNoTableOfBeadsIsNamed) {
         << frame;
   EXPECT_NE(said(table_of(names, {{0, 2e7}, {1, 2}, {1, 2}})).find("more than 1e+07 frames after the first"),
             std::string::npos);
+  EXPECT_NE(said(table_of(names, {{0, 200002}, {1, 2}, {1, 2}}))
+                .find("no bead is in the 200001 frames between 0 and 200002; is the number 200002 right?"),
+            std::string::npos);
   EXPECT_NE(said(table_of(names, {{0, 1}, {1, std::nan("")}, {1, 2}})).find("x: row 2: nan is no position."),
             std::string::npos);
   EXPECT_NE(said(table_of(names, {{0, 1}, {1, 1}, {1, -1e7}})).find("y: row 2: -1e+07 is no position."),

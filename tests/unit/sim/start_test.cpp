@@ -476,6 +476,16 @@ TEST(Trajectory, PositionsCountFromThePlateAndEmptySlotsAreLeftOut) {
   const Start horizontal = make_start(film.scene_of());
   EXPECT_DOUBLE_EQ(horizontal.beads[0].z, 1.5);
   EXPECT_DOUBLE_EQ(horizontal.beads[0].x, 1.25);
+  // A vertical drive with a motion along x: both are subtracted, at the phase of the frame.
+  film.info.drive = Drive{};
+  film.info.drive->horizontal = HorizontalMotion{.amplitude = 0.5, .ratio = 1, .phase = 0.25};
+  film.info.phases_per_cycle = 4;
+  film.info.columns.phase = true;
+  film.frame.phase = 0;
+  film.frame.cycle = 0;
+  EXPECT_DOUBLE_EQ(make_start(film.scene_of()).beads[0].x, 1.5);
+  film.frame.phase = 2;
+  EXPECT_DOUBLE_EQ(make_start(film.scene_of()).beads[0].x, 2.5);
 }
 
 TEST(Trajectory, SizesAreTheSimulationsNotTheCameras) {

@@ -53,6 +53,24 @@ std::string text(double v) {
 
 }  // namespace
 
+// Another gravity is another unit of time: with g -> k^2 g and omega -> k omega the motion is the same, k
+// times faster.
+TEST(BedFlight, FollowsTheGravityOfTheRun) {
+  const auto film = test::rigid_bed({.gamma = 1.7, .columns = 8, .rows = 3, .phases = 20, .cycles = 8});
+  for (const double faster : {0.3, 2.0}) {
+    TrajectoryInfo info = film.info();
+    info.drive->gravity = faster * faster;
+    info.drive->omega *= faster;
+    MemoryTrajectory scaled(info);
+    for (Frame frame : film.frames()) {
+      frame.time /= faster;
+      scaled.append(frame);
+    }
+    EXPECT_NEAR(measured(scaled) * faster / measured(film), 1, 1e-8) << faster;
+    EXPECT_NEAR(measured(scaled, "flight_share"), measured(film, "flight_share"), 1e-8) << faster;
+  }
+}
+
 TEST(BedFlight, OfTheRigidBedIsThatOfItsParabola) {
   for (const double gamma : {1.15, 1.3, 1.7, 2.2, 3.0})
     for (const int phases : {20, 60}) {

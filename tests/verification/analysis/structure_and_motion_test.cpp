@@ -58,6 +58,34 @@ TEST(PairCorrelation, OfPointsWithoutInteractionIsOne) {
     }
 }
 
+// Pairs farther apart than half a period have several images, of which the nearest is counted: there is no
+// value.
+TEST(PairCorrelation, EndsAtHalfAPeriod) {
+  TrajectoryInfo info;
+  info.n_beads = 72;
+  info.box.upper = Vec3(6, 1, 6);
+  info.box.boundary = {Boundary::periodic, Boundary::open, Boundary::periodic};
+  MemoryTrajectory gas(info);
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<double> place(0, 6);
+  for (int t = 0; t < 200; ++t) {
+    Frame frame;
+    frame.step = t;
+    for (int i = 0; i < 72; ++i) frame.position.emplace_back(place(random), 0, place(random));
+    gas.append(frame);
+  }
+  const auto results = analyze(gas, {.only = {"g_r", "g_r_distance"}});
+  const Result &g = find_result(results, "g_r"), &r = find_result(results, "g_r_distance");
+  std::size_t known = 0;
+  for (std::size_t b = 0; b < g.values.size(); ++b) {
+    EXPECT_EQ(std::isnan(g.values[b]), r.values[b] > 3) << r.values[b];
+    if (std::isnan(g.values[b])) continue;
+    EXPECT_NEAR(g.values[b], 71.0 / 72, 0.15) << r.values[b];
+    ++known;
+  }
+  EXPECT_EQ(known, 60U);
+}
+
 TEST(PairCorrelation, CountsTheShellsOfATriangularLattice) {
   constexpr int kColumns = 12, kRows = 14;
   constexpr double kSpacing = 1.02;
