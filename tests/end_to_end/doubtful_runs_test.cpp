@@ -54,6 +54,36 @@ TEST_F(DoubtfulRuns, OtherGravityOrWallsAreNotPooled) {
   EXPECT_NE(windows.out.find("0.75 to 1.5"), std::string::npos) << windows.out << windows.err;
 }
 
+// Other seeds of one scene differ; one simulation does not tell by how much.
+TEST_F(DoubtfulRuns, ComparisonsSayWhatTheyDoNotKnow) {
+  const std::vector<std::string> shaken = {"drive.gamma=1.6", "start.kind=\"random\"", "time.cycles=6"};
+  const auto seeded = [&](const std::string& name, const std::string& seed, const std::string& more = "") {
+    std::vector<std::string> set = shaken;
+    set.push_back("start.seed=" + seed);
+    if (!more.empty()) set.push_back(more);
+    ASSERT_EQ(simulate(name, set).code, 0);
+  };
+  seeded("one.h5", "1"), seeded("two.h5", "2"), seeded("three.h5", "3");
+  seeded("shape.h5", "4", "drive.harmonics=[[0.1, 0.25]]");
+  const auto compared = [&](const std::vector<std::string>& simulations) {
+    std::vector<std::string> words = {"compare",          "--experiment", folder_ / "one.h5", "-o",
+                                      folder_ / "report", "--no-film",    "--simulation"};
+    for (const std::string& name : simulations) words.push_back(folder_ / name);
+    const Ran ran = run_program(words);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return ran.out + ran.err;
+  };
+  const std::string unknown = "contains no scatter between seeds, as there is one simulation of each start";
+  const std::string one = compared({"two.h5"}), two = compared({"two.h5", "three.h5"});
+  EXPECT_NE(one.find("really differ"), std::string::npos) << one;
+  EXPECT_NE(one.find(unknown), std::string::npos) << one;
+  EXPECT_EQ(two.find(unknown), std::string::npos) << two;
+  const std::string shape = compared({"shape.h5"});
+  EXPECT_NE(shape.find("these runs are compared, but their drives have another form."), std::string::npos)
+      << shape;
+  EXPECT_EQ(one.find("another form"), std::string::npos) << one;
+}
+
 TEST_F(DoubtfulRuns, TheBedAtRestIsThatOfTheRun) {
   ASSERT_EQ(simulate("run.h5", {}).code, 0);
   ASSERT_EQ(simulate("rest.h5", {"drive.gamma=0"}).code, 0);
