@@ -138,18 +138,16 @@ LocatedTable read_located(const Table& table, const LocatedTableOptions& options
                      "has no column radius or diameter; state the bead diameter (--diameter, px).");
   all.has_errors = sigma_x != nullptr && sigma_y != nullptr;
 
-  // Each number between the first and the last is a frame, of some bytes.
-  constexpr std::int64_t kMostEmpty = 100'000;
-  std::vector<std::int64_t> present = numbers;
-  std::ranges::sort(present);
-  for (std::size_t i = 1; i < present.size(); ++i)
-    if (present[i] - present[i - 1] > kMostEmpty)
-      throw InputError({.file = table.file, .key = "frame"},
-                       fmt::format("no bead is in the {} frames between {} and {}; is the number {} right?",
-                                   present[i] - present[i - 1] - 1, present[i - 1], present[i], present[i]));
   std::vector<std::size_t> rows(numbers.size());
   std::iota(rows.begin(), rows.end(), std::size_t{0});
   std::ranges::stable_sort(rows, {}, [&](std::size_t row) { return numbers[row]; });
+  // Each number between the first and the last is a frame, of some bytes.
+  constexpr std::int64_t kMostEmpty = 100'000;
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    if (const std::int64_t before = numbers[rows[i - 1]], here = numbers[rows[i]]; here - before > kMostEmpty)
+      throw InputError({.file = table.file, .key = "frame"},
+                       fmt::format("no bead is in the {} frames between {} and {}; is the number {} right?",
+                                   here - before - 1, before, here, here));
   all.range.first = numbers[rows.front()];
   std::vector<TrackedBead> beads;
   double right = 0, bottom = 0;
