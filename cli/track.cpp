@@ -111,15 +111,14 @@ std::string describe(const imaging::TrackedStack& stack) {
 }
 
 /// Links the beads of a table.
-calibration::TrackedFilm track_beads_of_table(const TrackOptions& o, const Common& common, std::string& doubt,
-                                              imaging::FrameRange& range, StageTimes* times) {
+calibration::TrackedFilm track_beads_of_table(const TrackOptions& o, const Common& common,
+                                              StageTimes* times) {
   imaging::LocatedTableOptions options{.columns = named_columns(o.columns)};
   if (!o.picture.empty()) options.picture = {o.picture[0], o.picture[1]};
   const auto progress = [&](const std::string& stage) -> std::unique_ptr<Progress> {
     return std::make_unique<ProgressBar>(common, stage);
   };
-  return calibration::track_table(read_table(o.stack), std::move(options), o.film, progress, doubt, range,
-                                  times);
+  return calibration::track_table(read_table(o.stack), std::move(options), o.film, progress, times);
 }
 
 void run(TrackOptions& o, const Common& common) {
@@ -136,16 +135,13 @@ void run(TrackOptions& o, const Common& common) {
        {std::pair(!o.columns.empty(), "--columns"), {!o.picture.empty(), "--picture-size"}})
     if (given && !of_table)
       throw ConfigError({.file = {}, .key = option}, "applies to a table of located beads (.csv).");
-  imaging::FrameRange range = imaging::frames_of(o.film.locating);
-  std::string doubt_of_table;
-  calibration::TrackedFilm film =
-      of_table ? track_beads_of_table(o, common, doubt_of_table, range, profile.times())
-               : calibration::track_film(
-                     open, o.stack, o.film,
-                     [&](const std::string& stage) -> std::unique_ptr<Progress> {
-                       return std::make_unique<ProgressBar>(common, stage);
-                     },
-                     profile.times());
+  calibration::TrackedFilm film = of_table ? track_beads_of_table(o, common, profile.times())
+                                           : calibration::track_film(
+                                                 open, o.stack, o.film,
+                                                 [&](const std::string& stage) -> std::unique_ptr<Progress> {
+                                                   return std::make_unique<ProgressBar>(common, stage);
+                                                 },
+                                                 profile.times());
   const imaging::CellDescription& cell = film.cell;
   const imaging::TrackedStack& stack = film.stack;
   imaging::TrackPlan& plan = film.plan;
@@ -155,7 +151,8 @@ void run(TrackOptions& o, const Common& common) {
                      cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
   for (const std::string& doubt : imaging::implausible_numbers(imaging::shaken_cell(cell)))
     note(common, doubt);
-  if (!doubt_of_table.empty()) note(common, doubt_of_table + ".");
+  const imaging::FrameRange range = of_table ? stack.range : imaging::frames_of(o.film.locating);
+  if (!stack.spacing_doubt.empty()) note(common, stack.spacing_doubt + ".");
   if (of_table && range.first > 0 && stack.phases.locked())
     note(common,
          fmt::format("the first frame of {} has the number {}; its phase is {}, as frames count from 0 and "

@@ -225,9 +225,8 @@ bool is_table(const py::object& stack) {
 }
 
 py::object track(const py::object& stack, TrackCall call, const py::object& callback) {
-  std::string name, doubt;
+  std::string name;
   std::optional<Table> table;
-  imaging::FrameRange range;
   if (is_table(stack)) {
     table = table_of(stack);
     if (!py::hasattr(stack, "keys")) name = table->file;
@@ -245,9 +244,9 @@ py::object track(const py::object& stack, TrackCall call, const py::object& call
   };
   calibration::TrackedFilm film = unlocked(callback, [&](Progress& progress) {
     if (table)
-      return calibration::track_table(
-          *table, call.table, call.film,
-          [&](const std::string&) { return std::make_unique<Forwarded>(progress); }, doubt, range);
+      return calibration::track_table(*table, call.table, call.film, [&](const std::string&) {
+        return std::make_unique<Forwarded>(progress);
+      });
     return calibration::track_film(
         [&](const imaging::LocatorOptions& locator) {
           const py::gil_scoped_acquire lock;
@@ -270,7 +269,8 @@ py::object track(const py::object& stack, TrackCall call, const py::object& call
     imaging::write_trajectory(film.stack, film.plan, memory);
     trajectory = std::make_shared<Trajectory>(std::move(memory));
   }
-  if (!doubt.empty()) PyErr_WarnEx(PyExc_UserWarning, (doubt + ".").c_str(), 2);
+  if (!film.stack.spacing_doubt.empty())
+    PyErr_WarnEx(PyExc_UserWarning, (film.stack.spacing_doubt + ".").c_str(), 2);
   if (!film.stack.phases.warning.empty())
     PyErr_WarnEx(PyExc_UserWarning, (film.stack.phases.warning + ".").c_str(), 2);
   if (!film.check.disagreement.empty())

@@ -77,14 +77,12 @@ TrackedFilm track_film(
 
 TrackedFilm track_table(const Table& table, imaging::LocatedTableOptions located, const FilmOptions& options,
                         const std::function<std::unique_ptr<Progress>(const std::string& stage)>& progress,
-                        std::string& doubt, imaging::FrameRange& range, StageTimes* times) {
+                        StageTimes* times) {
   if (const std::string option = imaging::option_for_frames(options.locating); !option.empty())
     throw ConfigError({.file = table.file, .key = option},
                       "says how the beads of frames are located; those of a table are.");
   if (!options.locating.diameters.empty()) located.diameter_px = options.locating.diameters.front();
   imaging::LocatedTable beads = imaging::read_located(table, located, options.folder);
-  doubt = beads.spacing_doubt;
-  range = beads.range;
   StatedCell stated = stated_cell(options, beads.range);
   imaging::CellDescription& cell = stated.cell;
   imaging::TrackedStack stack = [&] {

@@ -56,12 +56,10 @@ TrackedFilm track_film(
 
 /// Links the beads of a table and checks the stated drive against the motion of the bed.
 /// \param located names of columns, picture; `options.locating` may contain one diameter and nothing else
-/// \param doubt receives what is doubtful about the table, as a sentence without a full stop
-/// \param range receives the numbers of the frames
 /// \throws ConfigError, InputError as resolve_cell, phase_source, read_located, track_located; ConfigError
 /// for an option that says how the beads of frames are located
 TrackedFilm track_table(const Table& table, imaging::LocatedTableOptions located, const FilmOptions& options,
                         const std::function<std::unique_ptr<Progress>(const std::string& stage)>& progress,
-                        std::string& doubt, imaging::FrameRange& range, StageTimes* times = nullptr);
+                        StageTimes* times = nullptr);
 
 }  // namespace twincell::calibration

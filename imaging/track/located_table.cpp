@@ -229,6 +229,7 @@ TrackedStack track_located(LocatedTable located, LinkOptions link, const CellDes
   stack.outside_cell = n_outside;
   stack.has_errors = located.has_errors;
   stack.range = located.range;
+  stack.spacing_doubt = std::move(located.spacing_doubt);
   return stack;
 }
 
