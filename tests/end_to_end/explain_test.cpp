@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -93,7 +94,8 @@ TEST_F(Explain, WhatItCostsIsMeasured) {
 }
 
 // A bed of unlike beads in contact costs about as much as one of equal beads. A crystal of unlike beads,
-// which do not touch, is three to four times as fast. Processor time, so that other programs do not matter.
+// which do not touch, is three to four times as fast. A program on the other thread of the same core lowers
+// the rate of processor time by up to a half: the best of alternating measurements counts.
 TEST_F(Explain, ABedOfUnlikeBeadsIsMeasuredInContact) {
   const std::vector<std::string> bed = {"--set",          "beads.layers=50", "--set",
                                         "cell.width=100", "--set",           "time.cycles=100"};
@@ -101,8 +103,11 @@ TEST_F(Explain, ABedOfUnlikeBeadsIsMeasuredInContact) {
     words.insert(words.end(), bed.begin(), bed.end());
     return explained(words)["particle_steps_per_second"].get<double>();
   };
-  const double equal = speed({}),
-               unlike = speed({"--set", "beads.spread=uniform", "--set", "beads.spread_width=0.1"});
+  double equal = 0, unlike = 0;
+  for (int round = 0; round < 4; ++round) {
+    equal = std::max(equal, speed({}));
+    unlike = std::max(unlike, speed({"--set", "beads.spread=uniform", "--set", "beads.spread_width=0.1"}));
+  }
   EXPECT_LT(unlike, 1.8 * equal);
   EXPECT_GT(unlike, 0.5 * equal);
 }
