@@ -22,6 +22,7 @@
 #include "core/error.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/scene/plan.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/scene/starts.hpp"
 #include "sim/start/start.hpp"

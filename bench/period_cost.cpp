@@ -18,6 +18,7 @@
 #include "core/error.hpp"
 #include "core/stage_times.hpp"
 #include "sim/run/simulation.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
 namespace {

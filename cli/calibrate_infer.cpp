@@ -27,6 +27,7 @@
 #include "core/error.hpp"
 #include "core/in_parallel.hpp"
 #include "sim/run/simulation.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell::cli {

@@ -10,6 +10,7 @@
 #include "sim/accuracy/plan_json.hpp"
 #include "sim/accuracy/step_error.hpp"
 #include "sim/run/cost.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "sim/start/start.hpp"
 

@@ -16,6 +16,7 @@
 #include "core/escape.hpp"
 #include "core/output_rules.hpp"
 #include "sim/lammps/export_lammps.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "trajectory/foreign/export_trajectory.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 

@@ -17,6 +17,7 @@
 #include "core/counted.hpp"
 #include "core/json_text.hpp"
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/read_scene.hpp"
 
 namespace twincell::cli {
 

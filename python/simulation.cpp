@@ -12,6 +12,7 @@
 #include "python/trajectory.hpp"
 #include "sim/accuracy/plan_json.hpp"
 #include "sim/scene/presets.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sim/scene/resource_demand.hpp"
 
 namespace twincell::python {
@@ -163,14 +164,14 @@ void bind_scene(py::module_& module) {
             return sim::read_scene(path, checked(set));
           },
           py::arg("path"), py::arg("set") = std::vector<std::string>{},
-          header_text("sim/scene/scene.hpp", "read_scene"))
+          header_text("sim/scene/read_scene.hpp", "read_scene"))
       .def_static(
           "from_text",
           [](const std::string& text, const std::string& name, const std::vector<std::string>& set) {
             return sim::read_scene_text(text, name, checked(set));
           },
           py::arg("text"), py::arg("name") = "scene", py::arg("set") = std::vector<std::string>{},
-          header_text("sim/scene/scene.hpp", "read_scene_text"))
+          header_text("sim/scene/read_scene.hpp", "read_scene_text"))
       .def_readonly("text", &sim::Scene::resolved, header_text("sim/scene/scene.hpp", "Scene::resolved"))
       .def_readonly("drive", &sim::Scene::drive, header_text("trajectory/drive.hpp", "Drive"))
       .def_readonly("n_beads", &sim::Scene::n_beads, header_text("sim/scene/scene.hpp", "Scene::n_beads"))

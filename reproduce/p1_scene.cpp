@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "sim/scene/plan.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sim/scene/scene.hpp"
 
 namespace twincell::reproduce {

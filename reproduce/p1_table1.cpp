@@ -8,6 +8,7 @@
 #include "core/json_text.hpp"
 #include "reproduce/p1_scene.hpp"
 #include "reproduce/reproduction.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sim/scene/scene.hpp"
 
 namespace twincell::reproduce {

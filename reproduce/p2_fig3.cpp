@@ -11,6 +11,7 @@
 #include "core/json_text.hpp"
 #include "reproduce/gas.hpp"
 #include "sim/run/simulation.hpp"
+#include "sim/scene/read_scene.hpp"
 
 namespace twincell::reproduce {
 

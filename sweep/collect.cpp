@@ -14,6 +14,7 @@
 #include "core/escape.hpp"
 #include "core/json_text.hpp"
 #include "core/json_view.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sim/scene/scene.hpp"
 #include "sweep/conditions.hpp"
 

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "sim/scene/scene.hpp"
 #include "sweep/cancellation_token.hpp"

@@ -16,6 +16,7 @@
 #include "core/sha256.hpp"
 #include "core/toml_leaves.hpp"
 #include "sim/scene/plan.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/start/start.hpp"

@@ -15,6 +15,7 @@
 #include "core/json_text.hpp"
 #include "core/provenance.hpp"
 #include "sim/run/simulation.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sweep/conditions.hpp"
 #include "sweep/measure.hpp"
 #include "sweep/stop_rule.hpp"

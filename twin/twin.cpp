@@ -19,6 +19,7 @@
 #include "imaging/track/write_trajectory.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/run/simulation.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "trajectory/calibration_file.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 #include "trajectory/unit_keys.hpp"

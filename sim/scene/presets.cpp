@@ -114,4 +114,10 @@ omega = 1.0
   return all;
 }
 
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  for (const auto& preset : presets()) names.push_back(preset.first);
+  return names;
+}
+
 }  // namespace twincell::sim

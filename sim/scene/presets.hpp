@@ -11,4 +11,7 @@ namespace twincell::sim {
 /// Name and text of every preset.
 const std::vector<std::pair<std::string, std::string>>& presets();
 
+/// Their names.
+std::vector<std::string> preset_names();
+
 }  // namespace twincell::sim

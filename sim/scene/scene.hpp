@@ -173,22 +173,9 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
   [[nodiscard]] std::vector<Wall> walls() const;
 };
 
-/// Reads a scene. The key `preset` names one of preset_names(); the file's own keys override it. Every key
-/// must be used: a key that the chosen laws, start or cell do not use is refused, or, if it comes from a
-/// preset or a calibration file, it is removed and listed in Scene::void_keys.
-/// \param assignments "section.key=value", which override everything else
-/// \throws InputError if the file is missing; ConfigError naming file, line, key, value and bound
-Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& assignments = {});
-/// Reads a scene from text. \param folder base of a relative start.from; empty: the working directory
-Scene read_scene_text(const std::string& text, const std::string& name,
-                      const std::vector<std::string>& assignments = {},
-                      const std::filesystem::path& folder = {});
-
 /// Where a run of the scene with this number of beads stands in the phase diagram: N_l sigma = N sigma/L_x,
 /// Gamma = A omega^2/g (absent without gravity), and the word of the start. \param beads absent: N_l is
 /// absent
 RunConditions conditions_of(const Scene& scene, std::optional<std::size_t> beads);
-
-std::vector<std::string> preset_names();
 
 }  // namespace twincell::sim

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "sim/laws/axes.hpp"
-#include "sim/scene/scene.hpp"
+#include "sim/scene/read_scene.hpp"
 
 namespace twincell::sim {
 

@@ -12,6 +12,7 @@
 #include "core/atomic_file.hpp"
 #include "imaging/camera/synthetic_camera.hpp"
 #include "imaging/cell/cell.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sim/scene/scene.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/put_file.hpp"

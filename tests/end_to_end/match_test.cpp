@@ -10,6 +10,7 @@
 #include <set>
 
 #include "core/atomic_file.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/rigid_bed.hpp"
 #include "trajectory/formats/h5md_file.hpp"

@@ -1,5 +1,6 @@
 // Fuzz target: a scene, as text.
 
+#include "sim/scene/read_scene.hpp"
 #include "sim/scene/scene.hpp"
 #include "tests/fuzz/input.hpp"
 

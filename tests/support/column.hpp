@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "sim/run/simulation.hpp"
+#include "sim/scene/read_scene.hpp"
 
 namespace twincell::sim {
 

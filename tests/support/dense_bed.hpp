@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "sim/scene/plan.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sim/start/start.hpp"
 #include "sim/stepping/solver.hpp"
 

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace twincell::sim {

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "sim/run/simulation.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "tests/support/complaint.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "trajectory/formats/h5md_file.hpp"

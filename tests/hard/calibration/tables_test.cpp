@@ -9,6 +9,7 @@
 #include "core/table_text.hpp"
 #include "imaging/benchmark/score.hpp"
 #include "imaging/phase/trigger_list.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/start/start.hpp"
 #include "tests/support/complaint.hpp"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/scene/plan.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "tests/support/complaint.hpp"
 
 namespace twincell::sim {

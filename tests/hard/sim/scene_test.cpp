@@ -11,6 +11,8 @@
 
 #include "core/error.hpp"
 #include "sim/scene/plan.hpp"
+#include "sim/scene/presets.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "tests/support/complaint.hpp"
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "sim/run/simulation.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "tests/support/rigid_bed.hpp"
 #include "tests/support/validation.hpp"
 

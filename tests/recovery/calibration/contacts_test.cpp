@@ -16,6 +16,7 @@
 #include "core/error.hpp"
 #include "sim/laws/linear_collision.hpp"
 #include "sim/run/simulation.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "tests/support/validation.hpp"
 
 using namespace twincell;
@@ -291,6 +292,40 @@ TEST(Collisions, OfTheSimulatorGiveItsRestitutionAndFriction) {
   test::validate(
       {"I6.2", "mu from collisions found in a trajectory", 0.2, 0.01, "Coulomb's law of the scene"},
       f.tangential.value("mu"));
+}
+
+// Two discs meet head on at a speed of 2 while both fall at a quarter of g; e_n = 0.8. With g = 1 their
+// centre of mass would seem to be kicked.
+TEST(Collisions, FallAtTheGravityOfTheTrajectory) {
+  constexpr double kG = 0.25, kDt = 0.2, kE = 0.8, kMeet = 0.5;
+  TrajectoryInfo info;
+  info.n_beads = 2;
+  info.columns.velocity = true;
+  info.drive = Drive{.omega = 1, .gravity = kG};
+  MemoryTrajectory trajectory(info);
+  for (int k = 0; k < 6; ++k) {
+    const double t = kDt * k, x = 0.5 + (t < kMeet ? kMeet - t : kE * (t - kMeet)), v = t < kMeet ? -1 : kE;
+    Frame frame;
+    frame.time = t;
+    frame.position = {{-x, 0, -kG * t * t / 2}, {x, 0, -kG * t * t / 2}};
+    frame.velocity = {{-v, 0, -kG * t}, {v, 0, -kG * t}};
+    trajectory.append(frame);
+  }
+  EXPECT_EQ(find_collisions(trajectory, {.gravity = 1}).crowded, 1U);
+  const FoundCollisions found = find_collisions(trajectory);
+  EXPECT_EQ(found.crowded, 0U);
+  ASSERT_EQ(found.impacts.size(), 1U);
+  EXPECT_NEAR(found.impacts[0].restitution, kE, 1e-9);
+}
+
+TEST(Collisions, OfAGasWithoutGravityNeedNoOption) {
+  const MemoryTrajectory trajectory = gas(20, 20);
+  const FoundCollisions stated = find_collisions(trajectory, {.gravity = 0}),
+                        found = find_collisions(trajectory);
+  ASSERT_GT(stated.impacts.size(), 10U);
+  ASSERT_EQ(found.impacts.size(), stated.impacts.size());
+  for (std::size_t k = 0; k < found.impacts.size(); ++k)
+    EXPECT_EQ(found.impacts[k].restitution, stated.impacts[k].restitution);
 }
 
 // t_c is 7e-3 t0 and the frames are 1.25e-3 t0 apart, so every collision spans several frames.

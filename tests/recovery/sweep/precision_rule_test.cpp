@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/error.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "tests/support/validation.hpp"
 
 namespace twincell::sweep {

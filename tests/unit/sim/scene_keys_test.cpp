@@ -3,6 +3,7 @@
 
 #include "sim/laws/axes.hpp"
 #include "sim/scene/plan.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sim/scene/scene.hpp"
 #include "tests/support/key_table_checks.hpp"
 
@@ -52,9 +53,9 @@ TEST(SceneKeys, ExamplesAreReadAndWhatIsOutOfRangeIsRefused) {
 
 TEST(SceneKeys, EveryKeyThatIsReadHasARow) {
   expect_a_row_for_every_query(scene_keys(), name_of);
-  expect_a_row_for_every_query_in(
-      {"sim/scene/scene.cpp", "sim/scene/drive_tables.cpp", "sim/laws", "trajectory/drive.cpp"},
-      scene_keys());
+  expect_a_row_for_every_query_in({"sim/scene/read_scene.cpp", "sim/scene/read_tables.cpp",
+                                   "sim/scene/drive_tables.cpp", "sim/laws", "trajectory/drive.cpp"},
+                                  scene_keys());
   std::set<std::string> rows;
   for (const KeyRow& row : scene_keys().rows) rows.insert(row.key);
   for (const std::string& key : all_law_keys()) EXPECT_TRUE(rows.contains("contact." + key)) << key;

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "core/error.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sim/system/cell_grid.hpp"
 #include "tests/support/complaint.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/error.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sim/start/start.hpp"
 #include "tests/support/complaint.hpp"
 

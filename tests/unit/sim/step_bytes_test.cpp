@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/run/simulation.hpp"
+#include "sim/scene/read_scene.hpp"
 
 namespace twincell::sim {
 namespace {

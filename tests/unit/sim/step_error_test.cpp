@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/scene/read_scene.hpp"
+
 namespace twincell::sim {
 namespace {
 

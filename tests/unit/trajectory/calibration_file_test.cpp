@@ -8,6 +8,7 @@
 
 #include "core/atomic_file.hpp"
 #include "imaging/cell/cell.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sim/scene/scene.hpp"
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"

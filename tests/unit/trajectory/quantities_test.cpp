@@ -4,6 +4,7 @@
 
 #include "core/atomic_file.hpp"
 #include "imaging/cell/cell.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sim/scene/scene.hpp"
 #include "tests/support/complaint.hpp"
 #include "tests/support/put_file.hpp"

@@ -9,6 +9,7 @@
 
 #include "analysis/observable/observable.hpp"
 #include "sim/run/simulation.hpp"
+#include "sim/scene/read_scene.hpp"
 
 namespace twincell::analysis {
 namespace {

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "sim/run/simulation.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "tests/support/validation.hpp"
 
 namespace twincell::sim {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "sim/run/simulation.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "tests/support/collision.hpp"
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
