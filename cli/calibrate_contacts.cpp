@@ -72,16 +72,16 @@ std::vector<calibration::BounceSample> samples_of(const BounceFlags& o, std::opt
   return samples;
 }
 
-/// In a trajectory g is the unit of acceleration. \returns a note if the flights show another one, otherwise
-/// nothing \throws InputError if it is far from 1
-std::string check_unit_gravity(const std::string& source, const calibration::BounceFit& fit) {
+/// The fitted gravity against that of the trajectory. \returns a note if the flights show another one,
+/// otherwise nothing \throws InputError if it is far off
+std::string check_gravity(const std::string& source, double stated, const calibration::BounceFit& fit) {
   constexpr double kClear = 5, kOff = 0.01, kFar = 0.05;  // standard errors; of g
-  const double off = std::abs(fit.gravity - 1);
-  if (off < kOff || off < kClear * fit.gravity_error) return {};
+  const double off = std::abs(fit.gravity / stated - 1);
+  if (off < kOff || off * stated < kClear * fit.gravity_error) return {};
   const std::string why = fmt::format(
-      "the best gravity is {:.4g} +- {:.1g}, where it is 1 in a trajectory: the bead may touch others "
+      "the best gravity is {:.4g} +- {:.1g}, where it is {:g} in the trajectory: the bead may touch others "
       "between its impacts (--bead selects one), or the scale or the frame rate is wrong",
-      fit.gravity, fit.gravity_error);
+      fit.gravity, fit.gravity_error, stated);
   if (off > kFar) throw InputError({.file = source, .key = {}}, why + ".");
   return why;
 }
@@ -89,6 +89,7 @@ std::string check_unit_gravity(const std::string& source, const calibration::Bou
 void run_bounce(const BounceFlags& o, const Common& common) {
   std::optional<Drive> drive;
   const std::vector<calibration::BounceSample> samples = samples_of(o, drive);
+  const double stated = drive ? drive->gravity : 1;  // of a trajectory
   if (o.amplitude || o.omega) {
     if (!o.amplitude || !o.omega)
       throw ConfigError({.file = {}, .key = "--drive-amplitude"},
@@ -120,7 +121,7 @@ void run_bounce(const BounceFlags& o, const Common& common) {
     fit.notes.push_back(
         fmt::format("{} without a number {} left out", counted(empty, "row"), empty == 1 ? "was" : "were"));
   if (is_trajectory(o.source) && !o.gravity)
-    if (const std::string why = check_unit_gravity(o.source, fit); !why.empty()) fit.notes.push_back(why);
+    if (const std::string why = check_gravity(o.source, stated, fit); !why.empty()) fit.notes.push_back(why);
   CalibrationResult out;
   out.notes = fit.notes;
   out.measured.push_back({.name = "contact.wall.restitution",
@@ -324,8 +325,8 @@ void add_calibrate_contacts(CLI::App& calibrate, Common& common) {
     kind.add_option("trajectory", o->trajectory,
                     "Trajectory (H5MD) with closely spaced frames: several per mean free flight")
         ->required();
-    kind.add_option("--gravity", o->options.gravity, "Acceleration of gravity along -z, reduced units")
-        ->capture_default_str();
+    kind.add_option("--gravity", o->options.gravity,
+                    "Acceleration of gravity along -z, reduced units; default: that of the trajectory");
     kind.add_option("--least-speed", o->options.least_speed,
                     "Smallest speed of approach, sigma/t0; slower impacts are left out")
         ->check(zero_or_above())

@@ -92,6 +92,7 @@ void run(ImportOptions& o, const Common& common) {
       {{"output", o.output},
        {"frames", source.n_frames()},
        {"beads", info.n_beads},
+       {"source", info.source},
        {"missing_beads", info.columns.identity}},
       fmt::format("{} of {}{}\n{}\n", counted(source.n_frames(), "frame"), counted(info.n_beads, "bead"),
                   info.columns.identity ? ", not all of them in every frame" : "", o.output));
@@ -131,6 +132,12 @@ void add_import(CLI::App& program, Common& common) {
   writes(common, verb,
          verb.add_option("-o,--output", o->output, "Trajectory file to write (H5MD)")->required(),
          Product::trajectory());
+  verb.add_option(
+          "--source", l.source,
+          "Where the beads come from: simulation, experiment or unknown. The beads of an experiment are "
+          "neighbours up to 1.3 diameters, others up to 1.2. Default: by the format")
+      ->check(CLI::IsMember({"simulation", "experiment", "unknown"}))
+      ->option_text("WORD");
   verb.add_option("--dimension", l.dimension,
                   "Dimension of the system; 2: the plane (x, y) with y upwards; 3: z upwards")
       ->check(CLI::IsMember({2, 3}))

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <utility>
 
+#include "core/counted.hpp"
 #include "core/median.hpp"
+#include "trajectory/spacing.hpp"
 
 namespace twincell::cli {
 
@@ -47,8 +49,18 @@ void WatchedImport::watch_steps(const Frame& frame) {
   }
 }
 
+void WatchedImport::watch_doubles(const Frame& frame) {
+  const double smallest =
+      info_.radius.empty() ? 0.5 : *std::min_element(info_.radius.begin(), info_.radius.end());
+  if (!(smallest > 0)) return;
+  const std::size_t here = listed_again(frame.position, kSameBead * 2 * smallest);
+  if (doubled_ == 0) doubled_step_ = frame.step;
+  doubled_ += here;
+}
+
 void WatchedImport::append(const Frame& frame) {
   watch_plate(frame);
+  watch_doubles(frame);
   if (frames_++ > 0) watch_steps(frame);
   before_ = frame;
   writer_.append(frame);
@@ -72,6 +84,12 @@ std::vector<std::string> WatchedImport::doubts() const {
         "from frame to frame the beads move {:.3g} times as far as their velocities say: the unit of the "
         "velocities, or the time between frames (--timestep), is wrong.",
         ratio));
+  if (doubled_ > 0)
+    doubts.push_back(
+        fmt::format("{}, the first in the frame of step {}, {} closer than {:g} diameters to another bead: "
+                    "are beads listed "
+                    "twice?",
+                    counted(doubled_, "bead"), doubled_step_, doubled_ == 1 ? "lies" : "lie", kSameBead));
   if (jumps_ > 0)
     doubts.push_back(fmt::format(
         "bead {} moves by {:.4g} bead diameters between the frames of the steps {} and {}{}, and the others "

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Looks for signs that an imported file means something else than the options say: beads beneath the plate,
-/// velocities or radii that contradict the positions, single beads that jump.
+/// velocities or radii that contradict the positions, single beads that jump, beads that are listed twice.
 
 #include <array>
 #include <cstddef>
@@ -24,6 +24,7 @@ class WatchedImport : public TrajectorySink {
  private:
   void watch_plate(const Frame& frame);
   void watch_steps(const Frame& frame);
+  void watch_doubles(const Frame& frame);
 
   TrajectorySink& writer_;
   const TrajectoryInfo& info_;
@@ -34,6 +35,8 @@ class WatchedImport : public TrajectorySink {
   std::size_t jumps_ = 0, jumped_ = 0;  ///< steps that are jumps; the bead of the first one
   std::array<std::int64_t, 2> jump_{};  ///< the frames of the first one
   double jump_length_ = 0;              ///< sigma
+  std::size_t doubled_ = 0;             ///< beads at the place of another one
+  std::int64_t doubled_step_ = 0;       ///< of the first frame with one
 };
 
 }  // namespace twincell::cli

@@ -152,7 +152,7 @@ void run(TrackOptions& o, const Common& common) {
   for (const std::string& doubt : imaging::implausible_numbers(imaging::shaken_cell(cell)))
     note(common, doubt);
   const imaging::FrameRange range = of_table ? stack.range : imaging::frames_of(o.film.locating);
-  if (!stack.spacing_doubt.empty()) note(common, stack.spacing_doubt + ".");
+  if (!stack.spacing_doubt.empty()) note(common, stack.spacing_doubt);
   if (of_table && range.first > 0 && stack.phases.locked())
     note(common,
          fmt::format("the first frame of {} has the number {}; its phase is {}, as frames count from 0 and "

@@ -269,8 +269,7 @@ py::object track(const py::object& stack, TrackCall call, const py::object& call
     imaging::write_trajectory(film.stack, film.plan, memory);
     trajectory = std::make_shared<Trajectory>(std::move(memory));
   }
-  if (!film.stack.spacing_doubt.empty())
-    PyErr_WarnEx(PyExc_UserWarning, (film.stack.spacing_doubt + ".").c_str(), 2);
+  if (!film.stack.spacing_doubt.empty()) PyErr_WarnEx(PyExc_UserWarning, film.stack.spacing_doubt.c_str(), 2);
   if (!film.stack.phases.warning.empty())
     PyErr_WarnEx(PyExc_UserWarning, (film.stack.phases.warning + ".").c_str(), 2);
   if (!film.check.disagreement.empty())

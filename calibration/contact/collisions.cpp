@@ -13,6 +13,14 @@
 namespace twincell::calibration {
 namespace {
 
+/// Acceleration of gravity of a trajectory, reduced units. A simulation without gravity states no Gamma,
+/// unless its drive changes.
+double gravity_of(const TrajectoryInfo& info) {
+  if (!info.drive) return 1;
+  const bool none = info.source == "simulation" && !info.conditions.gamma && !info.drive->ramp;
+  return none ? 0 : info.drive->gravity;
+}
+
 /// Time in [0, longest] at which two discs in uniform relative motion touch; none if they do not.
 std::optional<double> meeting(const Vec3& r, const Vec3& v, double reach, double longest) {
   const double b = r.dot(v), c = r.squaredNorm() - reach * reach, a = v.squaredNorm();
@@ -26,7 +34,11 @@ std::optional<double> meeting(const Vec3& r, const Vec3& v, double reach, double
 class Finder {
  public:
   Finder(const TrajectorySource& source, const CollisionOptions& options, std::size_t stride)
-      : info_(source.info()), options_(options), source_(source), stride_(stride) {
+      : info_(source.info()),
+        options_(options),
+        gravity_(options.gravity.value_or(gravity_of(info_))),
+        source_(source),
+        stride_(stride) {
     found_.stride = stride;
   }
 
@@ -56,8 +68,7 @@ class Finder {
     const double dt = at.time - other->time;
     Vec3 v = (at.position[i] - other->position[i]) / dt;
     v.y() = 0;
-    v.z() -=
-        options_.gravity * 0.5 * dt;  // from the interval's middle to this end; dt < 0 after the collision
+    v.z() -= gravity_ * 0.5 * dt;  // from the interval's middle to this end; dt < 0 after the collision
     return v;
   }
   [[nodiscard]] double radius(std::size_t i) const { return info_.radius.empty() ? 0.5 : info_.radius[i]; }
@@ -110,8 +121,7 @@ class Finder {
     if (!(approach > options_.least_speed)) return;
     ++found_.pairs;
     const double mi = mass(i), mk = mass(k);
-    const Vec3 kick =
-        flat((mi * (w[i] - v[i]) + mk * (w[k] - v[k])) / (mi + mk)) + Vec3(0, 0, options_.gravity * dt);
+    const Vec3 kick = flat((mi * (w[i] - v[i]) + mk * (w[k] - v[k])) / (mi + mk)) + Vec3(0, 0, gravity_ * dt);
     if (kick.norm() > options_.largest_kick * approach) {
       ++found_.crowded;
       return;
@@ -132,6 +142,7 @@ class Finder {
 
   const TrajectoryInfo& info_;
   const CollisionOptions& options_;
+  double gravity_;
   const TrajectorySource& source_;
   std::size_t stride_;
   FoundCollisions found_;

@@ -3,6 +3,7 @@
 /// Binary collisions in a trajectory, with the velocities before and after.
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "calibration/contact/walton.hpp"
@@ -12,8 +13,8 @@ namespace twincell::calibration {
 
 /// Options of find_collisions.
 struct CollisionOptions {
-  double gravity = 1;        ///< along -z, reduced units
-  double least_speed = 0.1;  ///< smallest approach speed, sigma/t0
+  std::optional<double> gravity;  ///< along -z, reduced units; default: that of the trajectory
+  double least_speed = 0.1;       ///< smallest approach speed, sigma/t0
   /// Largest change of the pair's centre-of-mass velocity between the frames, beyond gravity, as a fraction
   /// of the approach speed. A larger change means that a third body took part.
   double largest_kick = 0.05;

@@ -12,9 +12,11 @@
 #include <vector>
 
 #include "core/constants.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
 #include "imaging/track/inside_cell.hpp"
+#include "trajectory/spacing.hpp"
 
 namespace twincell::imaging {
 
@@ -95,24 +97,23 @@ double median_diameter(const Columns& columns) {
   return (radius != nullptr ? 2 : 1) * upper_median(sizes);
 }
 
+std::vector<Vec3> centres_of(const std::vector<TrackedBead>& beads) {
+  std::vector<Vec3> centres;
+  centres.reserve(beads.size());
+  for (const TrackedBead& b : beads) centres.emplace_back(b.x_px, b.y_px, 0);
+  return centres;
+}
+
 /// Says that the nearest neighbours of a frame are much closer than discs of one diameter can be.
 std::string doubt_of_spacing(const std::vector<TrackedBead>& beads, double diameter_px) {
-  constexpr std::size_t kFewest = 5, kMost = 2000;
+  constexpr std::size_t kFewest = 5;
   constexpr double kClosest = 0.7;
   if (beads.size() < kFewest) return {};
-  std::vector<double> nearest;
-  for (std::size_t i = 0; i < std::min(beads.size(), kMost); ++i) {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j < beads.size(); ++j)
-      if (j != i)
-        least = std::min(least, std::hypot(beads[i].x_px - beads[j].x_px, beads[i].y_px - beads[j].y_px));
-    nearest.push_back(least);
-  }
-  const double spacing = upper_median(nearest) / diameter_px;
+  const double spacing = median_spacing(centres_of(beads)) / diameter_px;
   if (spacing >= kClosest) return {};
   return fmt::format(
       "the nearest neighbours in the first frame are {:.3g} bead diameters of {:.4g} px apart, so the "
-      "diameter is wrong or the positions have another unit",
+      "diameter is wrong or the positions have another unit.",
       spacing, diameter_px);
 }
 
@@ -151,9 +152,14 @@ LocatedTable read_located(const Table& table, const LocatedTableOptions& options
   all.range.first = numbers[rows.front()];
   std::vector<TrackedBead> beads;
   double right = 0, bottom = 0;
-  std::int64_t frame = all.range.first;
+  std::int64_t frame = all.range.first, doubled_frame = 0;
+  std::size_t doubled = 0;
   const auto end_frame = [&] {
     if (frame == all.range.first) all.spacing_doubt = doubt_of_spacing(beads, all.diameter_px);
+    if (const std::size_t again = listed_again(centres_of(beads), kSameBead * all.diameter_px); again > 0) {
+      if (doubled == 0) doubled_frame = frame;
+      doubled += again;
+    }
     all.frames.append(beads);
     beads.clear();
     ++frame;
@@ -179,6 +185,10 @@ LocatedTable read_located(const Table& table, const LocatedTableOptions& options
     beads.push_back(b);
   }
   end_frame();
+  if (all.spacing_doubt.empty() && doubled > 0)
+    all.spacing_doubt = fmt::format(
+        "{}, the first in frame {}, {} closer than {:g} diameters to another bead: are beads listed twice?",
+        counted(doubled, "bead"), doubled_frame, doubled == 1 ? "lies" : "lie", kSameBead);
   all.width_px = static_cast<int>(std::ceil(right + 0.5));
   all.height_px = static_cast<int>(std::ceil(bottom + 0.5));
   if (options.picture) {

@@ -21,10 +21,11 @@ struct LocatedTable {
   FrameRange range;       ///< their numbers
   double diameter_px = 0;
   int width_px = 0,
-      height_px = 0;          ///< of the picture; if not stated, of the smallest that contains all beads
-  bool has_picture = false;   ///< its size is stated
-  bool has_errors = false;    ///< the table has sigma_x and sigma_y
-  std::string spacing_doubt;  ///< says that the beads are too close for their size; otherwise empty
+      height_px = 0;         ///< of the picture; if not stated, of the smallest that contains all beads
+  bool has_picture = false;  ///< its size is stated
+  bool has_errors = false;   ///< the table has sigma_x and sigma_y
+  std::string
+      spacing_doubt;  ///< a sentence: beads are too close for their size, or twice there; otherwise empty
 };
 
 /// What a user says about a table.

@@ -25,7 +25,7 @@ struct TrackedStack : LinkedDetections {
   std::size_t wrong_radius = 0;  ///< candidates excluded as discs of another size
   FrameRange range = {};         ///< numbers of the frames, which become the steps of the trajectory
   std::string spacing_doubt =
-      {};                  ///< of a table: the beads are too close for their size, without a full stop
+      {};                  ///< of a table: beads are too close for their size, or twice there, a sentence
   bool has_errors = true;  ///< the standard errors of the positions are known
   /// Says that no bead is about one sigma wide (10 %); empty if one is, or the scale is unknown.
   [[nodiscard]] std::string scale_doubt(const CellDescription& cell) const;

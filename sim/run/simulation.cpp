@@ -207,7 +207,8 @@ std::vector<std::string> Simulation::warnings() const {
         fmt::format("the bed still had a kinetic energy of {:.3g} m g sigma per bead when "
                     "start.settle_limit = {:g} ended its settling.",
                     settled_.energy_per_bead, scene_.settle_limit));
-  if (driven_ && scene_.in_motion && plan_.history && steps_done_ == 0 && kernel_->contacts().empty())
+  if (driven_ && scene_.in_motion && plan_.history && steps_done_ == 0 && kernel_->contacts().empty() &&
+      beads_in_contact(system_, Progress::none()) > 0)
     all.push_back(
         "the start in motion contains no contact springs (time.springs of the run that wrote it), so the "
         "spring of every contact starts unstretched.");

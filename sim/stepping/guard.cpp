@@ -88,7 +88,8 @@ void check_motion(const System& s, const GuardLimits& limits) {
                                  likely_cause(s, limits)));
     if (limits.ceiling > 0 && b.z + b.radius > plate + limits.ceiling)
       throw RunError(
-          fmt::format("{}: bead {} touched the lid at {:g} sigma above the plate; raise cell.height.",
+          fmt::format("{}: bead {} reached the height of the cell, {:g} sigma above the plate, where there "
+                      "is no lid; raise cell.height, or set cell.lid = \"wall\".",
                       moment(s), i, limits.ceiling));
   }
 }

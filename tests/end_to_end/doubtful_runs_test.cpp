@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 
 using namespace twincell;
 
@@ -136,6 +138,22 @@ TEST_F(DoubtfulRuns, ComparedFrequenciesThatDifferAreNoted) {
   EXPECT_NE(ran.err.find("K_m is 0.5625 in slow.h5 and 0.1406 in fast.h5"), std::string::npos) << ran.err;
 }
 
+TEST_F(DoubtfulRuns, TheOriginOfImportedBeadsMayBeStated) {
+  ASSERT_EQ(simulate("run.h5", {}).code, 0);
+  ASSERT_EQ(run_program({"export", folder_ / "run.h5", "--to", "xyz", "-o", folder_ / "run.xyz"}).code, 0);
+  const auto source = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"import",          folder_ / "run.xyz", "-o",
+                                      folder_ / "in.h5", "--force",           "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Ran ran = run_program(words);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(H5mdReader(folder_ / "in.h5").info().source, nlohmann::json::parse(ran.out)["source"]);
+    return nlohmann::json::parse(ran.out)["source"].get<std::string>();
+  };
+  EXPECT_EQ(source({}), "simulation");
+  EXPECT_EQ(source({"--source", "experiment"}), "experiment");
+}
+
 TEST_F(DoubtfulRuns, ImportedVelocitiesRadiiAndJumpsThatContradictThePositionsAreNoted) {
   // Four beads, side by side, move along x with unit velocity.
   const auto note = [&](double velocity, double radius, double jump) {
@@ -152,9 +170,12 @@ TEST_F(DoubtfulRuns, ImportedVelocitiesRadiiAndJumpsThatContradictThePositionsAr
     return ran.err;
   };
   const std::string far = "times as far as their velocities say", wide = "the radii may be diameters",
-                    jump = "moves by 1000 bead diameters between the frames";
-  for (const std::string& said : {far, wide, jump})
+                    jump = "moves by 1000 bead diameters between the frames",
+                    twice =
+                        "1 bead, the first in the frame of step 3, lies closer than 0.3 diameters to another";
+  for (const std::string& said : {far, wide, jump, twice})
     EXPECT_EQ(note(1, 0.5, 0).find(said), std::string::npos) << said;
+  EXPECT_NE(note(1, 0.5, -0.9).find(twice), std::string::npos);
   EXPECT_NE(note(0.001, 0.5, 0).find("move 1e+03 " + far), std::string::npos);
   EXPECT_NE(note(1, 1, 0).find(wide), std::string::npos);
   EXPECT_NE(note(1, 0.5, 1000).find(jump), std::string::npos);

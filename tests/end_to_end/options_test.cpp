@@ -148,6 +148,7 @@ const std::map<std::string, std::string> kQuantities = {
     {"shortest", "shortest track"},
     {"sigma", "diameter in an import, or column of errors"},
     {"simulation", "trajectories of simulations"},
+    {"source", "origin of imported beads"},
     {"stack", "stacks of experiments"},
     {"stored", "results of an earlier call"},
     {"sweep", "collected results of sweeps"},

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "core/error.hpp"
-#include "core/median.hpp"
 #include "trajectory/ranges.hpp"
+#include "trajectory/spacing.hpp"
 
 namespace twincell {
 
@@ -20,19 +20,12 @@ namespace {
   throw ConfigError({"", 0, 0, option}, why);
 }
 
-/// Median over some beads of the distance to the nearest other bead; NaN for fewer than two beads.
-double median_spacing(const std::vector<SnapshotBead>& beads) {
-  constexpr std::size_t kMost = 100;
-  if (beads.size() < 2) return std::nan("");
-  std::vector<double> nearest;
-  const std::size_t stride = std::max<std::size_t>(1, beads.size() / kMost);
-  for (std::size_t i = 0; i < beads.size(); i += stride) {
-    double closest = HUGE_VAL;
-    for (std::size_t j = 0; j < beads.size(); ++j)
-      if (j != i) closest = std::min(closest, (beads[j].position - beads[i].position).norm());
-    nearest.push_back(closest);
-  }
-  return upper_median(nearest);
+/// Median distance to the nearest other bead (spacing.hpp).
+double spacing_of(const std::vector<SnapshotBead>& beads) {
+  std::vector<Vec3> centres;
+  centres.reserve(beads.size());
+  for (const SnapshotBead& b : beads) centres.push_back(b.position);
+  return median_spacing(centres);
 }
 
 /// Reads the next snapshot and sorts its beads by id. \throws InputError if an id occurs twice
@@ -168,7 +161,7 @@ struct ForeignTrajectory::Impl {
   /// \param y_down whether y of the file increases downwards
   void complete(const Snapshot& first, const SnapshotColumns& columns, bool y_down) {
     info.n_beads = ids.size();
-    info.source = format->source;
+    info.source = o.source.empty() ? format->source : o.source;
     const auto all = [&](const std::array<bool, 3>& of) {
       return of[0] && of[1] && (o.dimension == 2 || of[2]);
     };
@@ -183,7 +176,7 @@ struct ForeignTrajectory::Impl {
     info.box.boundary = {edge(0), o.dimension == 2 ? Boundary::open : edge(1),
                          o.dimension == 2 ? edge(1) : edge(2)};
     if (o.width) info.box.upper.x() = *o.width / o.sigma;
-    spacing = median_spacing(first.beads) / o.sigma;
+    spacing = spacing_of(first.beads) / o.sigma;
     if (info.box.boundary[0] == Boundary::wall)
       beyond = static_cast<std::size_t>(
           std::count_if(first.beads.begin(), first.beads.end(), [&](const SnapshotBead& a) {

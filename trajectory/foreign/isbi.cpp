@@ -14,7 +14,7 @@ namespace twincell {
 
 namespace {
 
-constexpr const char* kWriter = "<!-- tracks written by twincell -->";
+constexpr const char* kIsbiMark = "<!-- tracks written by twincell -->";
 
 class IsbiWriter final : public SnapshotWriter {
  public:
@@ -23,7 +23,7 @@ class IsbiWriter final : public SnapshotWriter {
     out_.text() = fmt::format(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{}\n<root>\n<TrackContestISBI2012 SNR=\"\" density=\"\" "
         "scenario=\"{}\" generationDateTime=\"\">\n",
-        kWriter, html_text(options.stem));
+        kIsbiMark, html_text(options.stem));
   }
 
   void append(const Snapshot& s) override {
@@ -61,6 +61,6 @@ const ForeignFormat isbi_format = {
     .open = nullptr,
     .create = [](const std::filesystem::path& part, const WriteOptions& options)
         -> std::unique_ptr<SnapshotWriter> { return std::make_unique<IsbiWriter>(part, options); },
-    .mark = kWriter};
+    .mark = kIsbiMark};
 
 }  // namespace twincell

@@ -159,7 +159,7 @@ class TrackMateReader final : public PictureBeadsReader {
   XmlText xml_;
 };
 
-constexpr const char* kWriter = "<!-- written by twincell -->";
+constexpr const char* kTrackMateMark = "<!-- written by twincell -->";
 
 class TrackMateWriter final : public SnapshotWriter {
  public:
@@ -168,7 +168,7 @@ class TrackMateWriter final : public SnapshotWriter {
     out_.text() += fmt::format(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{}\n<TrackMate version=\"7.11.1\">\n<Model "
         "spatialunits=\"{}\" timeunits=\"{}\">\n<FeatureDeclarations>\n<SpotFeatures>\n",
-        kWriter, html_text(options_.length_unit), html_text(options_.time_unit));
+        kTrackMateMark, html_text(options_.length_unit), html_text(options_.time_unit));
     constexpr const char* kFeatures[][4] = {
         {"QUALITY", "Quality", "QUALITY", "false"}, {"POSITION_X", "X", "POSITION", "false"},
         {"POSITION_Y", "Y", "POSITION", "false"},   {"POSITION_Z", "Z", "POSITION", "false"},
@@ -248,7 +248,7 @@ const ForeignFormat track_mate_format = {
         -> std::unique_ptr<SnapshotReader> { return std::make_unique<TrackMateReader>(file, options); },
     .create = [](const std::filesystem::path& part, const WriteOptions& options)
         -> std::unique_ptr<SnapshotWriter> { return std::make_unique<TrackMateWriter>(part, options); },
-    .mark = kWriter,
+    .mark = kTrackMateMark,
     .source = "experiment"};
 
 }  // namespace twincell

@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/run/simulation.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "tests/support/collision.hpp"
 #include "tests/support/complaint.hpp"
 #include "tests/support/shaken_bed.hpp"
@@ -170,7 +171,7 @@ TEST(Input, H21_BadBeadsAreRefusedByName) {
   expect_refusal<ConfigError>([&] { Simulation(t.scene("x,z,vx\n5,3,1e5\n")); },
                               "scene.toml: start: ", "bead 0 moves", "sigma in one step");
   expect_refusal<ConfigError>([&] { Simulation(t.scene("x,z\n5,3\n", {"cell.height=2"})); },
-                              "bead 0 touched the lid");
+                              "bead 0 reached the height of the cell, 2 sigma above the plate");
   EXPECT_EQ(Simulation(t.scene("x,z\n", {"drive.amplitude=0.5"})).system().beads.size(), 0U);
 }
 

@@ -61,6 +61,15 @@ TEST(LocatedTable, BeadsThatAreTooCloseForTheirSizeAreDoubtful) {
             std::string::npos);
 }
 
+TEST(LocatedTable, BeadsThatAreListedTwiceAreDoubtful) {
+  const Table table = table_of({"frame", "x", "y"},
+                               {{0, 0, 0, 3, 3, 3, 3}, {0, 10, 20, 0, 10, 20, 12.5}, {0, 0, 0, 0, 0, 0, 1}});
+  const LocatedTable all = read_located(table, {.columns = {}, .diameter_px = 10, .picture = {}}, {});
+  EXPECT_EQ(all.spacing_doubt,
+            "1 bead, the first in frame 3, lies closer than 0.3 diameters to another bead: are beads listed "
+            "twice?");
+}
+
 TEST(LocatedTable, WhatIsNoTableOfBeadsIsNamed) {
   const auto said = [](const Table& table, LocatedTableOptions options = {}) {
     if (!options.diameter_px) options.diameter_px = 4;
