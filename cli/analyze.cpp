@@ -17,6 +17,7 @@
 #include "analysis/report/windows_figure.hpp"
 #include "analysis/runs/pooling.hpp"
 #include "analysis/runs/windows.hpp"
+#include "calibration/drive/plate_drive.hpp"
 #include "cli/output.hpp"
 #include "cli/profile.hpp"
 #include "cli/results_summary.hpp"
@@ -160,6 +161,12 @@ std::string as_text(const std::vector<analysis::Window>& windows, const std::vec
 }
 
 /// Analyses a run in windows. The results go to a table, if one is requested.
+/// Notes a film whose drive is not the stated one: phases and heights of the plate are then wrong.
+void note_drive(const Common& common, const TrajectorySource& trajectory) {
+  if (const auto said = calibration::recorded_disagreement(trajectory.info()); said && !said->empty())
+    note(common, fmt::format("{}: the stated drive does not fit the film: {}.", trajectory.name(), *said));
+}
+
 void run_windows(const Common& common, const AnalyzeOptions& options) {
   const auto refuse = [](const char* option, const char* why) {
     throw ConfigError({.file = {}, .key = option}, why);
@@ -171,6 +178,7 @@ void run_windows(const Common& common, const AnalyzeOptions& options) {
     refuse("--output",
            "is the results of a whole run; with --window-cycles, use --table FILE.csv or --json.");
   const H5mdReader trajectory(options.trajectories.front());
+  note_drive(common, trajectory);
   std::vector<analysis::Window> windows;
   std::vector<analysis::CycleRange> left_out;
   {
@@ -212,6 +220,7 @@ void run(const Common& common, const AnalyzeOptions& options) {
       throw InputError({.file = file, .key = {}}, "the trajectory contains no frame");
   }
   analysis::require_one_condition(trajectories);
+  for (const TrajectorySource* trajectory : trajectories) note_drive(common, *trajectory);
   if (readers.size() > 1 && !options.figures.empty())
     throw ConfigError({.file = {}, .key = "--figures"},
                       fmt::format("draws one trajectory; {} were given", readers.size()));

@@ -25,13 +25,7 @@ struct CompareOptions {
 /// bed.
 std::string drive_disagreement(const H5mdReader& experiment) {
   const TrajectoryInfo& info = experiment.info();
-  const auto tracking = nlohmann::json::parse(info.tracking_json, nullptr, false);
-  if (tracking.is_object()) {
-    if (tracking.contains("drive_disagreement"))
-      return tracking["drive_disagreement"].is_string() ? tracking["drive_disagreement"].get<std::string>()
-                                                        : "the stated drive does not fit the film";
-    if (tracking.contains("drive_check")) return {};
-  }
+  if (auto recorded = calibration::recorded_disagreement(info)) return *recorded;
   if (info.source != "experiment" || !info.drive) return {};
   calibration::BedSteps bed(info);
   Frame frame;

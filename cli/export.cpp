@@ -83,11 +83,13 @@ void export_beads(const ExportOptions& o, const Common& common) {
   if (!o.from.empty()) refuse("--from", "applies to a scene; the input is a trajectory.");
   const ForeignFormat& format = foreign_format(o.format, "--to");
   if (format.create == nullptr) refuse("--to", "this format is only read.");
-  const Product product =
-      format.folder ? Product::whole_folder(fmt::format("a folder of {} files", format.word))
-                    : Product{.name = fmt::format("a file in the format {}", format.word),
-                              .sign = format.mark.empty() ? Product::Sign::none : Product::Sign::head,
-                              .mark = std::string(format.mark)};
+  const Product product = format.folder
+                              ? Product::whole_folder(fmt::format("a folder of {} files", format.word))
+                              : Product{.name = fmt::format("a file in the format {}", format.word),
+                                        .sign = format.mark.empty()         ? Product::Sign::none
+                                                : format.mark_is_first_line ? Product::Sign::headings
+                                                                            : Product::Sign::head,
+                                        .mark = std::string(format.mark)};
   const std::filesystem::path output = require_output(o.output, product);
   const H5mdReader trajectory(o.input);
   const ExportUnits units = o.units == "mm" ? ExportUnits::laboratory(trajectory.info(), "--units")

@@ -53,6 +53,13 @@ void note_doubts(const Common& common, const ForeignTrajectory& source, double s
     note(common,
          fmt::format("the numbers of the steps or frames leave out {:g} {} between the {} of the file.",
                      missing, missing > 1 ? "frames" : "frame", source.n_frames()));
+  if (const std::string said = source.assumption(); !said.empty()) note(common, said);
+  const std::vector<std::int64_t>& ids = source.ids();
+  if (ids.back() != static_cast<std::int64_t>(ids.size()) - 1)  // ascending and distinct
+    note(common,
+         fmt::format("the beads are numbered from 0 to {}, in the order of their numbers in the file, {} to "
+                     "{}; --tracers and exports name these new numbers.",
+                     ids.size() - 1, ids.front(), ids.back()));
   if (source.replaces_times()) note(common, "the times of the file are replaced by those of --timestep.");
 }
 
@@ -60,7 +67,10 @@ void run(ImportOptions& o, const Common& common) {
   if (is_trajectory(o.file))
     throw ConfigError({o.file, 0, 0, ""},
                       "this is a trajectory (H5MD) already; analyze, draw and export read it as it is.");
-  for (std::size_t k = 0; k < o.origin.size(); ++k) o.foreign.origin[static_cast<int>(k)] = o.origin[k];
+  if (!o.origin.empty()) {
+    Vec3& corner = o.foreign.origin.emplace(Vec3::Zero());
+    for (std::size_t k = 0; k < o.origin.size(); ++k) corner[static_cast<int>(k)] = o.origin[k];
+  }
   const ForeignFormat& format =
       o.format.empty() ? format_of_file(o.file) : foreign_format(o.format, "--format");
   o.foreign.table_columns = named_columns(o.columns);
@@ -148,9 +158,10 @@ void add_import(CLI::App& program, Common& common) {
   verb.add_option("--sigma", l.sigma, "Bead diameter, the unit of length of the trajectory")
       ->capture_default_str();
   verb.add_option("--gravity", l.gravity, "Acceleration of gravity g")->capture_default_str();
-  verb.add_option(
-          "--cell-origin", o->origin,
-          "Lower left inside corner of the cell, with the plate at its mean height: x y [z]; default: 0")
+  verb.add_option("--cell-origin", o->origin,
+                  "Lower left inside corner of the cell, with the plate at its mean height: x y [z]; "
+                  "default: 0, along "
+                  "a period its beginning")
       ->expected(2, 3);
   verb.add_option("--cell-width", l.width,
                   "Distance of the side walls; default: up to the end of the box of the file");

@@ -117,6 +117,8 @@ twin::Twin add_twin(const Common& common, const MatchOptions& o, const twin::Twi
   if (!twin.missing_beads.empty())
     note(common, fmt::format("{}: {} ({} are in its first packing).", of_stack.stack.string(),
                              twin.missing_beads, twin.beads));
+  for (const std::string& doubt : twin.cell_doubts)
+    note(common, fmt::format("{}: {}", of_stack.stack.string(), doubt));
   if (!twin.scale_doubt.empty())
     note(common, fmt::format("{}: {}.", of_stack.stack.string(), twin.scale_doubt));
   if (twin.records_transient())

@@ -27,6 +27,7 @@
 #include "imaging/benchmark/score.hpp"
 #include "imaging/cell/implausible.hpp"
 #include "imaging/stack/open_frames.hpp"
+#include "imaging/track/bed_in_cell.hpp"
 #include "imaging/track/write_trajectory.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
@@ -174,8 +175,10 @@ void run(TrackOptions& o, const Common& common) {
   {
     Stage writing(profile.times(), "writing", "frames");
     H5mdWriter writer(o.output, plan.info);
-    imaging::write_trajectory(stack, plan, writer);
+    imaging::BedInCell watched(writer, plan.info, cell, stack.height_px);
+    imaging::write_trajectory(stack, plan, watched);
     writer.finish();
+    for (const std::string& doubt : watched.doubts()) note(common, doubt);
     if (!o.csv.empty()) write_csv(o.csv, stack, range);
     writing.count(static_cast<double>(stack.frames.size()));
   }

@@ -67,6 +67,14 @@ bool is_product(const std::filesystem::path& file, const Product& product) {
       const std::string head = head_of(file, product.mark.size() + 1);
       return head == product.mark + "\n" || head == product.mark + "\r";
     }
+    case Product::Sign::headings: {
+      std::istringstream marks(product.mark);
+      for (std::string mark; std::getline(marks, mark);) {
+        const std::string head = head_of(file, mark.size() + 1);
+        if (head == mark + "\n" || head == mark + "\r") return true;
+      }
+      return false;
+    }
     case Product::Sign::beginning:
       return head_of(file, product.mark.size()) == product.mark;
     case Product::Sign::head: {

@@ -18,6 +18,7 @@ struct Product {
     results_group,    ///< HDF5 with /results and /provenance
     checkpoint,       ///< HDF5 with the root attribute "sha256"
     first_line,       ///< the first line is `mark`
+    headings,         ///< the first line is one of the lines of `mark`
     beginning,        ///< the text begins with `mark`
     ending,           ///< the bytes end with `mark`
     head,             ///< the first 4 KiB hold one of the lines of `mark`

@@ -12,6 +12,7 @@
 #include "imaging/preprocess/open_flattened.hpp"
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/stack/open_frames.hpp"
+#include "imaging/track/bed_in_cell.hpp"
 #include "imaging/track/locate_stack.hpp"
 #include "imaging/track/motion_in_exposure.hpp"
 #include "imaging/track/write_trajectory.hpp"
@@ -259,16 +260,23 @@ py::object track(const py::object& stack, TrackCall call, const py::object& call
   if (!name.empty()) provenance.inputs.push_back(imaging::file_of_stack(name));
   film.plan.info.provenance_json = provenance.to_json();
   std::shared_ptr<Trajectory> trajectory;
+  std::vector<std::string> doubts;
+  const auto write = [&](TrajectorySink& sink) {
+    imaging::BedInCell watched(sink, film.plan.info, film.cell, film.stack.height_px);
+    imaging::write_trajectory(film.stack, film.plan, watched);
+    doubts = watched.doubts();
+  };
   if (call.output) {
     H5mdWriter writer(*call.output, film.plan.info);
-    imaging::write_trajectory(film.stack, film.plan, writer);
+    write(writer);
     writer.finish();
     trajectory = std::make_shared<Trajectory>(*call.output);
   } else {
     SharedFrames memory(film.plan.info);
-    imaging::write_trajectory(film.stack, film.plan, memory);
+    write(memory);
     trajectory = std::make_shared<Trajectory>(std::move(memory));
   }
+  for (const std::string& doubt : doubts) PyErr_WarnEx(PyExc_UserWarning, doubt.c_str(), 2);
   if (!film.stack.spacing_doubt.empty()) PyErr_WarnEx(PyExc_UserWarning, film.stack.spacing_doubt.c_str(), 2);
   if (!film.stack.phases.warning.empty())
     PyErr_WarnEx(PyExc_UserWarning, (film.stack.phases.warning + ".").c_str(), 2);

@@ -236,6 +236,22 @@ class Draft {
     return with_errors(*rate / s_.drive->period, {s_.drive->period_error / s_.drive->period});
   }
 
+  /// A second harmonic that is clearly there. Its acceleration is four times its share of A.
+  void harmonic() {
+    constexpr double kErrors = 5, kShare = 0.01;
+    if (!s_.drive || !s_.drive->second_harmonic) return;
+    const calibration::DriveFit& d = *s_.drive;
+    if (*d.second_harmonic < std::max(kShare, kErrors * *d.second_harmonic_error)) return;
+    const calibration::Estimate share{*d.second_harmonic, *d.second_harmonic_error},
+        phase{*d.second_harmonic_phase, share.error / (2 * std::numbers::pi * share.value)};
+    out_.keys.push_back(
+        {"drive.harmonics",
+         fmt::format("[[{}, {}]]", value_text(share), value_text(phase)),
+         fmt::format("+- {}, {}: second harmonic over A, and its phase, from the plate's edge",
+                     error_text(share.error), error_text(phase.error)),
+         {share, phase}});
+  }
+
   void drive() {
     std::optional<calibration::Estimate> amplitude;
     if (s_.drive && scale_) {
@@ -245,6 +261,7 @@ class Draft {
                fmt::format("{}, {} +- {} px", s_.plate_of_bed ? "lower side of the bed" : "plate's edge",
                            value_text(px), error_text(px.error)));
     }
+    harmonic();
     const auto f = frequency();
     const bool hertz = f && sigma_mm_;  // the frequency in reduced units needs the scale
     if (amplitude && hertz) {

@@ -15,6 +15,7 @@
 #include "core/sha256.hpp"
 #include "core/toml_leaves.hpp"
 #include "imaging/stack/open_frames.hpp"
+#include "imaging/track/bed_in_cell.hpp"
 #include "imaging/track/track.hpp"
 #include "imaging/track/write_trajectory.hpp"
 #include "sim/run/make_solver.hpp"
@@ -232,8 +233,10 @@ void track_experiment(imaging::FrameSource& frames, FilmedCell& filmed, calibrat
   if (filmed.drive.empty()) calibration::record(check, plan.info);
   plan.info.provenance_json = provenance.of_experiment(cell);
   H5mdWriter writer(twin.experiment, plan.info);
-  imaging::write_trajectory(stack, plan, writer);
+  imaging::BedInCell watched(writer, plan.info, cell, stack.height_px);
+  imaging::write_trajectory(stack, plan, watched);
   writer.finish();
+  twin.cell_doubts = watched.doubts();
   twin.pixels_per_sigma = plan.pixel_frame.pixels_per_sigma;
 }
 

@@ -70,6 +70,7 @@ struct Twin {
   imaging::PhaseTable phases;   ///< of the stack
   std::string missing_beads;    ///< LinkedDetections::missing_beads of the stack
   std::string scale_doubt;      ///< TrackedStack::scale_doubt of the stack
+  std::vector<std::string> cell_doubts;  ///< BedInCell::doubts of the stack
 
   /// Whether the film begins in mid-motion and the simulations record their way from rest to that motion:
   /// nothing is discarded and the first packing falls by more than 0.1 sigma.

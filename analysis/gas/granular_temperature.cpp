@@ -241,7 +241,8 @@ class GranularTemperature : public Observable {
       if (!frame.present(i) || !frame.velocity[i].allFinite() || !std::isfinite(frame.position[i].z()))
         continue;
       const double m = info_.mass.empty() ? 1.0 : info_.mass[i], w = frame.velocity[i].z();
-      SlabSums& slab = field_[{frame.phase, static_cast<int>(std::floor(frame.position[i].z()))}];
+      SlabSums& slab =
+          field_[{frame.phase, static_cast<int>(std::floor(info_.box.wrap(frame.position[i]).z()))}];
       slab.n += 1;
       slab.mass += m;
       slab.momentum += m * w;

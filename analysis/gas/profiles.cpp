@@ -45,7 +45,14 @@ struct Slab {
 
 class Profiles : public Observable {
  public:
-  explicit Profiles(const AnalysisContext& context) : info_(context.info) {}
+  explicit Profiles(const AnalysisContext& context) : info_(context.info) {
+    if (!info_.box.periodic(Axis::z)) return;
+    // Slabs divide the period evenly.
+    const double period = info_.box.size().z();
+    slabs_in_period_ = std::max<std::int64_t>(1, std::llround(period));
+    thickness_ = period / static_cast<double>(slabs_in_period_);
+    foot_ = info_.box.lower.z();
+  }
 
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
@@ -53,21 +60,21 @@ class Profiles : public Observable {
     const double drift = centre_of_mass_velocity(frame, info_.mass).value_or(Vec3::Zero()).z();
     for (std::size_t i = 0; i < frame.position.size(); ++i) {
       if (!frame.present(i) || !frame.position[i].allFinite()) continue;
-      const double z = frame.position[i].z();
+      const double z = frame.position[i].z() - foot_;
       const double radius = info_.radius.empty() ? 0.5 : info_.radius[i];
       const auto below = [&](double height) {
         return info_.box.dimension == 2 ? disc_below(radius, height) : sphere_below(radius, height);
       };
-      const auto top = static_cast<std::int64_t>(std::floor(z + radius));
+      const auto top = static_cast<std::int64_t>(std::floor((z + radius) / thickness_));
       double under = 0;
-      for (auto k = static_cast<std::int64_t>(std::floor(z - radius)); k <= top; ++k) {
-        const double up_to = below(static_cast<double>(k) + 1 - z);
-        slabs_[k].filled += up_to - under;
+      for (auto k = static_cast<std::int64_t>(std::floor((z - radius) / thickness_)); k <= top; ++k) {
+        const double up_to = below(thickness_ * static_cast<double>(k + 1) - z);
+        slabs_[slab_of(k)].filled += up_to - under;
         under = up_to;
       }
       if (frame.velocity.empty() || !frame.velocity[i].allFinite()) continue;
       const double mass = info_.mass.empty() ? 1 : info_.mass[i];
-      Slab& slab = slabs_[static_cast<std::int64_t>(std::floor(z))];
+      Slab& slab = slabs_[slab_of(static_cast<std::int64_t>(std::floor(z / thickness_)))];
       slab.w.add(mass, frame.velocity[i].z());
       slab.u.add(mass, frame.velocity[i].x());
       slab.now += mass * (frame.velocity[i].z() - drift) * (frame.velocity[i].z() - drift);
@@ -82,10 +89,10 @@ class Profiles : public Observable {
   [[nodiscard]] std::vector<Result> results() const override {
     std::vector<double> z, phi, t_z, t_x, t_frames;
     const Vec3 size = info_.box.size();
-    const double slab_size = size.x() * (info_.box.dimension == 2 ? 1 : size.y());
+    const double slab_size = thickness_ * size.x() * (info_.box.dimension == 2 ? 1 : size.y());
     for (const auto& [k, slab] : slabs_) {
       if (!(slab.filled > 0)) continue;  // a bead touches the border of this slab without overlapping it
-      z.push_back(static_cast<double>(k) + 0.5);
+      z.push_back(foot_ + thickness_ * (static_cast<double>(k) + 0.5));
       phi.push_back(slab.filled / slab_size / static_cast<double>(frames_));
       t_z.push_back(slab.w.temperature());
       t_x.push_back(slab.u.temperature());
@@ -104,7 +111,10 @@ class Profiles : public Observable {
         "m <(v - <v>)^2>, <v> the mean of the slab over all frames, no factor 1/2; NaN with fewer than 100 "
         "velocities";
     return {
-        array("profile_z", z, "sigma", "centres of slabs of thickness sigma, plate mean at 0", none),
+        array("profile_z", z, "sigma",
+              slabs_in_period_ == 0 ? "centres of slabs of thickness sigma, plate mean at 0"
+                                    : "centres of slabs about sigma thick that divide the period evenly",
+              none),
         array("phi_z", phi, "1",
               info_.box.dimension == 2 ? "area of discs in the slab over its area, mean over frames"
                                        : "volume of spheres in the slab over its volume, mean over frames",
@@ -146,8 +156,14 @@ class Profiles : public Observable {
     return r;
   }
 
+  [[nodiscard]] std::int64_t slab_of(std::int64_t k) const {
+    return slabs_in_period_ == 0 ? k : ((k % slabs_in_period_) + slabs_in_period_) % slabs_in_period_;
+  }
+
   static constexpr double kMostOfTheBeads = 0.99;
   const TrajectoryInfo& info_;
+  std::int64_t slabs_in_period_ = 0;  ///< along a periodic z; 0: not periodic
+  double thickness_ = 1, foot_ = 0;   ///< of a slab; lower side of slab 0, sigma
   std::size_t frames_ = 0;
   std::map<std::int64_t, Slab>
       slabs_;  // sparse: a bead far above the bed adds two slabs instead of thousands

@@ -36,7 +36,9 @@ class VolumeFraction : public Observable {
   }
 
   [[nodiscard]] std::vector<Result> results() const override {
-    const auto result = [](const char* name, const Fraction& fraction, const char* up_to) {
+    const auto result = [&](const char* name, const Fraction& fraction, const char* up_to) {
+      if (info_.box.periodic(Axis::z))
+        return absent_result(name, "the cell is periodic along z: the bed has no top", kSource);
       if (fraction.sunk)
         return absent_result(
             name,

@@ -158,12 +158,9 @@ class Slip : public Observable {
 
   /// Ratio of the observed variance of p_s to that of independent trials, at least 1, with its description.
   /// Beads that slip together are not independent; the scatter from period to period measures the effect.
-  [[nodiscard]] std::pair<double, std::string> design_effect() const {
-    const auto interval = fraction_.interval("periods");
-    if (!interval)
-      return {1, "beads and periods taken as independent: " + fraction_.why_no_interval("periods")};
+  [[nodiscard]] std::pair<double, std::string> design_effect(const Interval& interval) const {
     const double p = fraction_.mean();
-    const double error = (interval->high - interval->low) / 2 / student_t_95(1e9);
+    const double error = (interval.high - interval.low) / 2 / student_t_95(1e9);
     const double variance = error * error;
     const double independent = p * (1 - p) / static_cast<double>(trials_);
     const double effect = independent > 0 ? std::max(1.0, variance / independent) : 1;
@@ -183,8 +180,13 @@ class Slip : public Observable {
     const auto trials = static_cast<double>(trials_);
     if (slips_ == 0) {
       p_s.interval = binomial_interval(0, trials, "bead-periods");
+    } else if (const auto interval = fraction_.interval("periods"); !interval && fraction_.has_no_scatter()) {
+      p_s.interval = binomial_interval(fraction_.mean() * trials, trials, "bead-periods");
+      p_s.interval->method += "; " + fraction_.why_no_interval("periods");
+    } else if (!interval) {
+      p_s.no_interval = fraction_.why_no_interval("periods");
     } else {
-      const auto [effect, how] = design_effect();
+      const auto [effect, how] = design_effect(*interval);
       const double counts = fraction_.mean() * trials;
       p_s.interval = effect > 1 && counts < trials
                          ? wilson_interval(counts / effect, trials / effect, "effective bead-periods")

@@ -58,7 +58,14 @@ class VelocityAutocorrelation : public Observable {
       ++n;
     }
     if (n < 2) return {};
-    for (Vec3& each : v) each -= sum / n;
+    const Vec3 mean = sum / n;
+    for (Vec3& each : v) {
+      // What is left of beads that all move alike is the rounding of the mean.
+      constexpr double kRounding = 1e-12;
+      const double before = each.norm();
+      each -= mean;
+      if (each.norm() < kRounding * before) each = Vec3::Zero();
+    }
     return v;
   }
 

@@ -33,9 +33,11 @@ struct Difference {
   std::optional<double> filmed;      ///< F
   std::optional<double> camera;      ///< F - S, from the run that was filmed
   std::optional<double> statistics;  ///< standard error of E - F (or E - S) from the intervals of both
-  std::optional<double> seeds;       ///< largest standard deviation between simulations of one start
-  std::size_t seed_runs = 0;         ///< simulations of that start
-  std::optional<double> tracers;     ///< standard deviation of E - S over three lines of tracers
+  std::string
+      without_error;  ///< "experiment" or "simulation", if the error of this side is missing in error()
+  std::optional<double> seeds;    ///< largest standard deviation between simulations of one start
+  std::size_t seed_runs = 0;      ///< simulations of that start
+  std::optional<double> tracers;  ///< standard deviation of E - S over three lines of tracers
   std::optional<double> defects;  ///< largest difference between the means of simulations of different starts
 
   [[nodiscard]] double difference() const { return experiment.value - simulation.value; }
@@ -48,7 +50,7 @@ struct Difference {
   /// Statistics, seeds and tracers added in quadrature, as far as they are known; absent if none of them is
   /// known.
   [[nodiscard]] std::optional<double> error() const;
-  /// remainder / error; absent without an error.
+  /// remainder / error; absent without an error, and if one side has none.
   [[nodiscard]] std::optional<double> in_errors() const;
   /// Whether the remainder exceeds two errors and the difference between starts with other defects.
   [[nodiscard]] bool is_real() const;

@@ -11,8 +11,10 @@ namespace twincell::analysis {
 OnsetAgreement agreement_of(const PhaseBoundary& a, const PhaseBoundary& b) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if ((!a.below && !a.above) || (!b.below && !b.above)) return OnsetAgreement::unknown;
-  const bool apart = a.above.value_or(kInfinity) < b.below.value_or(-kInfinity) ||
-                     b.above.value_or(kInfinity) < a.below.value_or(-kInfinity);
+  // At a strength that is above the one onset and below the other they differ, so that touching intervals are
+  // apart.
+  const bool apart = a.above.value_or(kInfinity) <= b.below.value_or(-kInfinity) ||
+                     b.above.value_or(kInfinity) <= a.below.value_or(-kInfinity);
   return apart ? OnsetAgreement::different : OnsetAgreement::compatible;
 }
 

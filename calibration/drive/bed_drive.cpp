@@ -199,6 +199,61 @@ std::optional<BedDrive> at_another_phase(const BedSteps& bed, const Drive& drive
   return found;
 }
 
+/// The phase at which the bed is accelerated downwards most, in g: mean over cycles and its standard error.
+struct Fall {
+  std::int32_t phase = -1;
+  double acceleration = 0, error = 0;
+};
+
+Fall largest_fall(const std::vector<BedSteps::Step>& steps, const Drive& drive) {
+  struct Sums {
+    double n = 0, sum = 0, squares = 0;
+  };
+  std::map<std::int32_t, Sums> phases;
+  for (std::size_t k = 1; k < steps.size(); ++k) {
+    const BedSteps::Step &before = steps[k - 1], &now = steps[k];
+    const double gap = static_cast<double>(now.cycle - before.cycle) + now.begin - before.end;
+    if (std::abs(gap) > 1e-6) continue;  // a frame is missing in between
+    const double period = drive.period(), first = (before.end - before.begin) * period,
+                 second = (now.end - now.begin) * period;
+    const double a = 2 * (now.dz / second - before.dz / first) / (first + second) / drive.gravity;
+    Sums& sums = phases[now.phase];
+    sums.n += 1, sums.sum += a, sums.squares += a * a;
+  }
+  Fall fall;
+  for (const auto& [phase, sums] : phases) {
+    if (sums.n < kFewestCycles) continue;
+    const double mean = sums.sum / sums.n,
+                 error = std::sqrt(std::max(0.0, sums.squares / sums.n - mean * mean) / (sums.n - 1));
+    if (mean < fall.acceleration) fall = {phase, mean, error};
+  }
+  return fall;
+}
+
+/// What contradicts any drive of this strength, as a clause; otherwise empty.
+std::string contradiction_of(const std::vector<BedSteps::Step>& steps, const Drive& drive) {
+  constexpr double kStill = 0.05;  // rms step, in that of the plate
+  constexpr double kClearly = 1.5, kErrors = 3;
+  double moved = 0, of_plate = 0;  // sums of squares
+  for (const BedSteps::Step& step : steps) {
+    const double plate = drive.amplitude * (std::sin(kTurn * step.end) - std::sin(kTurn * step.begin));
+    moved += step.dz * step.dz;
+    of_plate += plate * plate;
+  }
+  if (moved < kStill * kStill * of_plate)
+    return fmt::format("the beads stand still in the frames, but the cell states a plate of A = {:.4g} sigma",
+                       drive.amplitude);
+  const Fall fall = largest_fall(steps, drive);
+  if (const double most = kClearly * std::max(1.0, drive.gamma());
+      fall.acceleration < -most - kErrors * fall.error)
+    return fmt::format(
+        "the bed is accelerated downwards by {:.2g} +- {:.1g} g at phase {}, more than gravity and a plate "
+        "with Gamma = "
+        "{:.3g} can do: the picture is upside down, or the scale, the frame rate or the frequency is wrong",
+        -fall.acceleration, fall.error, fall.phase, drive.gamma());
+  return {};
+}
+
 }  // namespace
 
 BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info) {
@@ -213,6 +268,8 @@ BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info) {
   if (bed.steps().empty())
     return because(
         fmt::format("fewer than {} columns of beads are seen in consecutive frames", kFewestBeads));
+  if (std::string why = contradiction_of(bed.steps(), *info.drive); !why.empty())
+    return {.amplitude = 0, .contradiction = std::move(why)};
   if (const auto found = amplitude_of(bed.steps(), *info.drive, kSmallest, kLargest)) return *found;
   if (const auto found = at_another_phase(bed, *info.drive, info.phases_per_cycle)) return *found;
   return because("at no phase of the cycle do its lowest beads move like a plate");

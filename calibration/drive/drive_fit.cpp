@@ -448,6 +448,8 @@ void add_second_harmonic(DriveFit& lock, const Attempt& a, int harmonics, double
       lock.cyclic_factor * report.covariance.block<2, 2>(4, 4) + angle * angle * Eigen::Matrix2d::Identity();
   lock.second_harmonic = h.norm();
   lock.second_harmonic_error = std::sqrt(c.trace() / 2);
+  const double turn = std::atan2(h.y(), h.x()) / (2 * kPi);
+  lock.second_harmonic_phase = turn - std::floor(turn);
   const double freedom =
       lock.cyclic_factor > 1 ? std::min(2.0 * harmonics, report.n_residuals - 6.0) : report.n_residuals - 6.0;
   const double f = h.dot(c.ldlt().solve(h)) / 2;

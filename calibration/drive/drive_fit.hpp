@@ -51,6 +51,7 @@ struct DriveFit {
   double phi_error = 0, omega_error = 0, amplitude_error = 0, z0_error = 0;
   double period = 0, period_error = 0;                           ///< frames
   std::optional<double> second_harmonic, second_harmonic_error;  ///< over A
+  std::optional<double> second_harmonic_phase;                   ///< Harmonic::phase
   std::optional<double> p_sinusoidal;  ///< probability of a second harmonic this large by chance
   double rms = 0;                      ///< residual of the locked frames
   /// Factor by which the power of the residuals at the third and higher harmonics exceeds that of white

@@ -262,6 +262,15 @@ void record(const DriveCheck& check, TrajectoryInfo& info) {
   info.tracking_json = json_text(tracking);
 }
 
+std::optional<std::string> recorded_disagreement(const TrajectoryInfo& info) {
+  const auto tracking = nlohmann::json::parse(info.tracking_json, nullptr, false);
+  if (!tracking.is_object()) return std::nullopt;
+  if (tracking.contains("drive_disagreement"))
+    return tracking["drive_disagreement"].is_string() ? tracking["drive_disagreement"].get<std::string>()
+                                                      : "the stated drive does not fit the film";
+  return tracking.contains("drive_check") ? std::optional(std::string()) : std::nullopt;
+}
+
 DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::filesystem::path& stack,
                           const imaging::FrameRange& range, int threads, Progress& progress,
                           bool fixed_phases) {
@@ -329,6 +338,8 @@ DriveCheck check_by_bed(const BedSteps& bed, const TrajectoryInfo& info,
   check.by = "bed";
   check.amplitude = seen.amplitude;
   check.amplitude_error = seen.amplitude_error;
+  check.disagreement = seen.contradiction;
+  if (!check.disagreement.empty()) return check;
   const std::string what = "the bed on its plate";
   if (seen.phase_shift != 0) {
     check.disagreement = phase_disagreement(seen.phase_shift, info);

@@ -136,6 +136,19 @@ def gsd(twincell, folder, truth):
         same("imported x", group["value"][1, :, 0], [3, 5.5], 1e-12)
         same("imported z", group["value"][1, :, 2], [1, 5.25], 1e-12)
         same("imported time", group["time"][()], [5, 10], 1e-12)
+    # A bead that moves 6 in a period of 8. The library leaves out the images of the first frame, which are 0.
+    other.particles.N = 1
+    other.particles.velocity = None
+    with gsd.hoomd.open(str(folder / "fast.gsd"), "wb") as file:
+        for step in range(5):
+            x = -3.0 + 6 * step
+            image = math.floor((x + 4) / 8)
+            other.configuration.step = step
+            other.particles.position, other.particles.image = [[x - 8 * image, 0, 0]], [[image, 0, 0]]
+            file.append(other)
+    run(twincell, "import", "fast.gsd", "-o", "fast.h5", "--timestep", 1, "-q", folder=folder)
+    with h5py.File(folder / "fast.h5") as file:
+        same("unwrapped x", file["particles/trajectory/position/value"][:, 0, 0], [1, 7, 13, 19, 25], 1e-6)
 
 
 def vtk(twincell, folder, truth):

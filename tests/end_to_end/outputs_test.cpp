@@ -433,7 +433,7 @@ TEST(Outputs, FilesAreReplacedByTheirOwnKindOrByForce) {
   EXPECT_NE(refused.err.find("does not state which program made it"), std::string::npos) << refused.err;
   // An output of one kind does not replace one of another kind.
   write("user.xyz", "1\nProperties=species:S:1:pos:R:3\nX 0 0 0\n");
-  write("user.csv", "frame,particle,x,y\n0,0,1,2\n");
+  write("user.csv", "frame,particle,x,y,step,time,my_column\n0,0,1,2,0,0,5\n");
   EXPECT_EQ(run_program({"export", "sim.h5", "--to", "xyz", "-o", "user.xyz", "-q"}).code, 2);
   EXPECT_EQ(run_program({"export", "sim.h5", "--to", "csv", "-o", "user.csv", "-q"}).code, 2);
   EXPECT_EQ(run_program({"export", "sim.h5", "--to", "xyz", "-o", "e.csv", "-q"}).code, 2);

@@ -169,13 +169,47 @@ class TableReader final : public PictureBeadsReader {
   std::size_t n_columns_ = 0;
 };
 
+/// The first line of a table with these columns.
+std::string heading_of(const SnapshotColumns& has, bool is_3d) {
+  std::string text = "frame,particle";
+  const auto add = [&](const char* name) {
+    for (const char* axis : {"x", "y", "z"})
+      if (is_3d || *axis != 'z') text += fmt::format(",{}{}", name, axis);
+  };
+  add("");
+  text += ",step,time";
+  if (has.phase) text += ",phase,cycle";
+  if (has.radius) text += ",radius";
+  if (has.mass) text += ",bead_mass";
+  if (has.type) text += ",tracer";
+  if (has.velocity[0]) add("v");
+  if (has.uncertainty) add("sigma_");
+  return text;
+}
+
+/// All first lines that TableWriter writes.
+const std::string& all_headings() {
+  static const std::string all = [] {
+    std::string lines;
+    for (unsigned bits = 0; bits < 1U << 7; ++bits) {
+      const auto bit = [&](unsigned k) { return (bits >> k & 1U) != 0; };
+      SnapshotColumns has;
+      has.phase = bit(0), has.radius = bit(1), has.mass = bit(2), has.type = bit(3), has.uncertainty = bit(4);
+      has.velocity.fill(bit(5));
+      lines += heading_of(has, bit(6)) + '\n';
+    }
+    return lines;
+  }();
+  return all;
+}
+
 class TableWriter final : public SnapshotWriter {
  public:
   TableWriter(const std::filesystem::path& part, const WriteOptions& options)
       : out_(part), has_(options.columns), is_3d_(options.dimension == 3) {}
 
   void append(const Snapshot& s) override {
-    if (n_frames_ == 0) write_header();
+    if (n_frames_ == 0) out_.text() += heading_of(has_, is_3d_) + '\n';
     auto text = std::back_inserter(out_.text());
     const auto add = [&](const Vec3& v, double sign) {  // y vertical, z depth
       fmt::format_to(text, ",{},{}", v.x(), sign * (is_3d_ ? v.z() : v.y()) + 0.0);
@@ -199,24 +233,6 @@ class TableWriter final : public SnapshotWriter {
   void finish() override { out_.close(); }
 
  private:
-  void write_header() {
-    std::string& text = out_.text();
-    const auto add = [&](const char* name) {
-      for (const char* axis : {"x", "y", "z"})
-        if (is_3d_ || *axis != 'z') text += fmt::format(",{}{}", name, axis);
-    };
-    text += "frame,particle";
-    add("");
-    text += ",step,time";
-    if (has_.phase) text += ",phase,cycle";
-    if (has_.radius) text += ",radius";
-    if (has_.mass) text += ",bead_mass";
-    if (has_.type) text += ",tracer";
-    if (has_.velocity[0]) add("v");
-    if (has_.uncertainty) add("sigma_");
-    text += '\n';
-  }
-
   TextOutput out_;
   SnapshotColumns has_;
   bool is_3d_;
@@ -234,7 +250,8 @@ const ForeignFormat bead_table_format = {
         -> std::unique_ptr<SnapshotReader> { return std::make_unique<TableReader>(file, options); },
     .create = [](const std::filesystem::path& part, const WriteOptions& options)
         -> std::unique_ptr<SnapshotWriter> { return std::make_unique<TableWriter>(part, options); },
-    .mark = "frame,particle,x,y,step,time\nframe,particle,x,y,z,step,time",
+    .mark = all_headings(),
+    .mark_is_first_line = true,
     .source = "unknown"};
 
 }  // namespace twincell

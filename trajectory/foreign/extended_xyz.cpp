@@ -56,11 +56,23 @@ class XyzReader final : public SnapshotReader {
     if (n < 0) fail(fmt::format("the number of beads is needed, '{}' was found.", in_.line().substr(0, 60)));
     if (!in_.next()) fail("the file ends within a frame.");
     read_head(s);
+    if (!id_ && n_frames_ > 1 && n != n_beads_)
+      fail_at(s.line,
+              fmt::format("the frame has {} beads, the first one has {}; without the property id:I:1 the "
+                          "missing ones are unknown.",
+                          n, n_beads_));
+    n_beads_ = n;
     for (std::int64_t i = 0; i < n; ++i) read_bead(i, s);
     if (!has_box_) enclose(s, dimension_);
     return true;
   }
   [[nodiscard]] const SnapshotColumns& columns() const override { return has_; }
+  [[nodiscard]] std::string assumption() const override {
+    return states_no_pbc_
+               ? "the file states Lattice without pbc: by the rule of extended XYZ the box is periodic "
+                 "along all axes; pbc=\"F F F\" states walls."
+               : "";
+  }
   [[nodiscard]] std::int64_t size() const override { return in_.size(); }
   [[nodiscard]] std::int64_t done() const override { return in_.done(); }
 
@@ -85,6 +97,9 @@ class XyzReader final : public SnapshotReader {
     if (const std::string* time = value({"Time", "time"})) s.time = number(*time);
     if (const std::string* step = value({"Timestep", "timestep", "Step", "step"})) s.step = whole(*step);
     read_box(s, value({"Lattice"}), value({"Origin", "origin"}), value({"pbc"}));
+    const std::string* creator = value({"creator"});
+    for (std::size_t k = 0; k < 3; ++k)  // export writes how far beads have moved
+      has_.wrapped[k] = s.periodic[k] && !(creator && *creator == "twincell");
     const std::string* properties = value({"Properties"});
     place_columns(properties ? *properties : "species:S:1:pos:R:3");
   }
@@ -108,7 +123,11 @@ class XyzReader final : public SnapshotReader {
       for (int k = 0; k < 3; ++k) s.lower[k] = number(words_[static_cast<std::size_t>(k)]);
     }
     s.upper += s.lower;
-    if (!pbc) return;
+    if (!pbc) {
+      s.periodic = {true, true, true};
+      states_no_pbc_ = true;
+      return;
+    }
     split_words(*pbc, words_);
     if (words_.size() != 3) fail("pbc needs three words, T or F.");
     for (std::size_t k = 0; k < 3; ++k) {
@@ -191,7 +210,8 @@ class XyzReader final : public SnapshotReader {
   const Property *position_ = nullptr, *id_ = nullptr, *radius_ = nullptr, *mass_ = nullptr, *type_ = nullptr,
                  *velocity_ = nullptr, *spin_ = nullptr;
   SnapshotColumns has_;
-  bool has_box_ = false;
+  bool has_box_ = false, states_no_pbc_ = false;
+  std::int64_t n_beads_ = 0;
   std::int64_t n_frames_ = 0;
 };
 

@@ -48,6 +48,7 @@ struct ForeignTrajectory::Impl {
   std::filesystem::path path;
   const ForeignFormat* format = nullptr;
   ForeignOptions o;
+  Vec3 origin = Vec3::Zero();  ///< in the axes of Snapshot
   TrajectoryInfo info;
   std::size_t n_frames = 0;
   std::vector<std::int64_t> ids;  ///< of the slots, ascending
@@ -60,6 +61,8 @@ struct ForeignTrajectory::Impl {
   double step_distance = 0, step_range = 0;  ///< smallest between two frames; first to last
   double spacing = 0;                        ///< of the beads of the first frame, sigma
   std::size_t beyond = 0;                    ///< beads of the first frame beside the cell
+  std::array<bool, 3> outside{};             ///< a bead lies outside the period along this axis
+  std::string assumption;
 
   /// Converts a vector from the axes of Snapshot to those of Box. In 2D, y of the snapshot is our z, and -z
   /// is our y.
@@ -115,11 +118,14 @@ struct ForeignTrajectory::Impl {
                                          *s.time, *time_before));
     time_before = s.time;
     for (const SnapshotBead& a : s.beads) {
-      if (!((a.position - o.origin).cwiseAbs().maxCoeff() <= kFarthestPosition * o.sigma))
+      if (!((a.position - origin).cwiseAbs().maxCoeff() <= kFarthestPosition * o.sigma))
         reader.fail_at(a.line,
                        fmt::format("bead {} is at ({:g}, {:g}, {:g}), farther than {:g} bead diameters "
                                    "from the origin of the cell.",
                                    a.id, a.position.x(), a.position.y(), a.position.z(), kFarthestPosition));
+      for (int k = 0; k < 3; ++k)
+        if (a.position[k] < s.lower[k] - o.sigma || a.position[k] > s.upper[k] + o.sigma)
+          outside[static_cast<std::size_t>(k)] = true;
       constexpr double kFlat = 1e-9;
       if (!first_position) first_position = a.position;
       for (const int k : {1, 2})
@@ -129,7 +135,10 @@ struct ForeignTrajectory::Impl {
                                            "bead; is this a three-dimensional system (--dimension 3)?",
                                            a.id, a.position.z(), first_position->z()));
     }
-    const Vec3 upper = turned(s.upper - o.origin) / o.sigma;
+    Vec3 end = s.upper - origin;
+    for (int k = 0; k < 3; ++k)
+      if (s.periodic[static_cast<std::size_t>(k)]) end[k] = s.upper[k] - s.lower[k];
+    const Vec3 upper = turned(end) / o.sigma;
     info.box.upper = n_frames == 0 ? upper : Vec3(info.box.upper.cwiseMax(upper));
   }
 
@@ -175,12 +184,17 @@ struct ForeignTrajectory::Impl {
     const auto edge = [&](std::size_t k) { return first.periodic[k] ? Boundary::periodic : Boundary::wall; };
     info.box.boundary = {edge(0), o.dimension == 2 ? Boundary::open : edge(1),
                          o.dimension == 2 ? edge(1) : edge(2)};
+    constexpr double kRounding = 1e-9;
+    if (const double period = first.upper.x() - first.lower.x();
+        o.width && first.periodic[0] && std::abs(*o.width - period) > kRounding * period)
+      refuse("--cell-width", fmt::format("is {:g}, but the file is periodic along x with a period of {:g}.",
+                                         *o.width, period));
     if (o.width) info.box.upper.x() = *o.width / o.sigma;
     spacing = spacing_of(first.beads) / o.sigma;
     if (info.box.boundary[0] == Boundary::wall)
       beyond = static_cast<std::size_t>(
           std::count_if(first.beads.begin(), first.beads.end(), [&](const SnapshotBead& a) {
-            const double x = (a.position.x() - o.origin.x()) / o.sigma;
+            const double x = (a.position.x() - origin.x()) / o.sigma;
             return x < 0 || x > info.box.upper.x();
           }));
     if (o.dimension == 2) info.box.upper.y() = (first.upper.z() - first.lower.z()) / o.sigma;
@@ -227,12 +241,12 @@ struct ForeignTrajectory::Impl {
       Vec3 r = a.position;
       for (int k = 0; k < 3; ++k) {
         const auto axis = static_cast<std::size_t>(k);
-        if (!s.periodic[axis] || !reader.columns().wrapped[axis]) continue;
+        if (!s.periodic[axis] || !reader.columns().wrapped[axis] || outside[axis]) continue;
         const double length = s.upper[k] - s.lower[k];
         if (std::isfinite(last[slot][k])) r[k] -= length * std::round((r[k] - last[slot][k]) / length);
       }
       last[slot] = r;
-      frame.position[slot] = turned(r - o.origin) / o.sigma;
+      frame.position[slot] = turned(r - origin) / o.sigma;
       if (o.dimension == 2) frame.position[slot].y() = 0;
       if (info.columns.velocity) frame.velocity[slot] = turned(a.velocity) * (t0 / o.sigma);
       if (info.columns.spin) frame.spin[slot] = turned(a.spin) * t0;
@@ -255,18 +269,22 @@ ForeignTrajectory::ForeignTrajectory(const std::filesystem::path& path, const Fo
   d.check_options();
   const auto source = d.open();
   SnapshotReader& reader = *source;
-  d.o.origin = reader.upright(d.o.origin);
+  if (d.o.origin) d.origin = reader.upright(*d.o.origin);
   struct Bead {
     double radius, mass;
     bool tracer;
   };
   std::map<std::int64_t, Bead> seen;
   std::size_t fewest = 0;
+  constexpr double kSameRadius = 1e-6;
+  bool radii_change = false;
   Snapshot s, first;
   while (next_sorted(reader, s)) {
     if (d.n_frames == 0) {
       first = s;
       fewest = s.beads.size();
+      for (int k = 0; k < 3; ++k)
+        if (!d.o.origin && s.periodic[static_cast<std::size_t>(k)]) d.origin[k] = s.lower[k];
       d.info.box.lower = Vec3::Zero();
     }
     d.learn(reader, s, first);
@@ -282,9 +300,14 @@ ForeignTrajectory::ForeignTrajectory(const std::filesystem::path& path, const Fo
       const std::int64_t n = d.phase_count(reader, s), per_cycle = d.o.phases_per_cycle;
       if (d.n_frames == 0) d.first_cycle = (n - (n % per_cycle + per_cycle) % per_cycle) / per_cycle;
     }
-    for (const SnapshotBead& a : s.beads)
-      seen.emplace(a.id, Bead{a.radius / d.o.sigma, a.mass / d.o.bead_mass.value_or(1),
-                              d.tracer_type(reader.columns()) == a.type});
+    for (const SnapshotBead& a : s.beads) {
+      const Bead bead{a.radius / d.o.sigma, a.mass / d.o.bead_mass.value_or(1),
+                      d.tracer_type(reader.columns()) == a.type};
+      const auto [known, is_new] = seen.emplace(a.id, bead);
+      radii_change =
+          radii_change ||
+          (!is_new && !(std::abs(bead.radius - known->second.radius) <= kSameRadius * known->second.radius));
+    }
     fewest = std::min(fewest, s.beads.size());
     ++d.n_frames;
     progress.update(reader.done(), reader.size());
@@ -297,6 +320,10 @@ ForeignTrajectory::ForeignTrajectory(const std::filesystem::path& path, const Fo
     d.info.tracer.push_back(bead.tracer ? 1 : 0);
   }
   d.info.columns.identity = fewest < d.ids.size();
+  d.assumption = reader.assumption();
+  if (radii_change && reader.columns().radius)
+    d.assumption += std::string(d.assumption.empty() ? "" : " ") +
+                    "the radii of beads change from frame to frame: each keeps its first one.";
   const Vec3 along_y = reader.upright(Vec3(0, 1, 0));
   d.complete(first, reader.columns(), along_y.minCoeff() < 0);
 }
@@ -318,6 +345,14 @@ bool ForeignTrajectory::is_flat() const {
 double ForeignTrajectory::missing_frames() const {
   if (!(impl_->step_distance > 0)) return 0;
   return std::floor(impl_->step_range / impl_->step_distance) + 1 - static_cast<double>(impl_->n_frames);
+}
+
+const std::vector<std::int64_t>& ForeignTrajectory::ids() const {
+  return impl_->ids;
+}
+
+std::string ForeignTrajectory::assumption() const {
+  return impl_->assumption;
 }
 
 bool ForeignTrajectory::replaces_times() const {

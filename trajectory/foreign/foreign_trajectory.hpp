@@ -3,11 +3,13 @@
 /// Converts files of other programs to trajectories, and trajectories to snapshots in their units and axes.
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/progress.hpp"
 #include "trajectory/drive.hpp"
@@ -22,11 +24,12 @@ struct ForeignOptions {
   std::optional<double> timestep;  ///< length of a step; required unless the file has times
   double sigma = 1;                ///< bead diameter, the trajectory's unit of length
   double gravity = 1;              ///< g; t0 = sqrt(sigma/g) is the trajectory's unit of time
-  Vec3 origin = Vec3::Zero();      ///< lower left inside corner of the cell, plate at its mean height
-  std::optional<double> width;     ///< between the side walls; absent: up to the end of the file's box
-  DriveSpec drive;                 ///< drive of the plate; empty: unknown
-  Axis drive_axis = Axis::z;       ///< in the axes of Box
-  int phases_per_cycle = 0;  ///< N_k; 0: not phase-locked. If set, each frame must be at k/N_k of a cycle
+  /// Lower left inside corner of the cell, plate at its mean height; absent: 0, along a period its beginning
+  std::optional<Vec3> origin;
+  std::optional<double> width;  ///< between the side walls; absent: up to the end of the file's box
+  DriveSpec drive;              ///< drive of the plate; empty: unknown
+  Axis drive_axis = Axis::z;    ///< in the axes of Box
+  int phases_per_cycle = 0;     ///< N_k; 0: not phase-locked. If set, each frame must be at k/N_k of a cycle
   double phase_of_step_zero = 0;    ///< fraction of a cycle; a `wiggle` wall starts at the bottom: 0.75
   std::optional<double> bead_mass;  ///< unit of the column mass; without it the column is ignored
   std::optional<long> tracer_type;  ///< type that marks tracers
@@ -38,8 +41,9 @@ struct ForeignOptions {
 /// A file of another program, read in two passes: the first collects beads, box and columns, the second
 /// copies the frames. Memory use does not grow with the number of frames, except for tables.
 ///
-/// A bead that is absent from a frame has an empty slot there. Coordinates that are wrapped, without a number
-/// of periods, are unwrapped by the shortest displacement from frame to frame.
+/// A bead that is absent from a frame has an empty slot there. Coordinates without a number of periods are
+/// taken for wrapped, unless a bead lies more than a diameter outside the period, and are unwrapped by the
+/// shortest displacement from frame to frame.
 class ForeignTrajectory {
  public:
   /// \throws InputError naming file and line for anything malformed; ConfigError for options that are missing
@@ -62,6 +66,10 @@ class ForeignTrajectory {
   [[nodiscard]] double spacing() const;
   /// Number of beads of the first frame whose centres lie beside the cell, beyond its side walls.
   [[nodiscard]] std::size_t n_beyond() const;
+  /// The file's numbers of the beads, ascending: bead i of the trajectory is ids()[i] of the file.
+  [[nodiscard]] const std::vector<std::int64_t>& ids() const;
+  /// What was assumed of the file, in sentences; otherwise empty.
+  [[nodiscard]] std::string assumption() const;
   /// Appends all frames to `sink` in order.
   void copy_to(TrajectorySink& sink, Progress& progress = Progress::none()) const;
 

@@ -44,6 +44,7 @@ struct ForeignFormat {
   /// Lines, one of which is in the first 4 KiB of every file that twincell writes in this format, and none in
   /// the files of other programs; empty: the format has no place for it.
   std::string_view mark;
+  bool mark_is_first_line = false;    ///< the first line is one of them, as a whole
   const char* source = "simulation";  ///< TrajectoryInfo::source of what is read
 };
 

@@ -218,7 +218,7 @@ class GsdReader final : public SnapshotReader {
     has_.mass = has_.mass || !mass.empty();
     has_.type = has_.type || !types.empty();
     if (!velocity.empty()) has_.velocity.fill(true);
-    if (image.empty()) has_.wrapped.fill(true);
+    has_.wrapped.fill(!has_images_);  // frames without the chunk have images 0 if another frame has it
     const Vec3 size = s.upper - s.lower;
     for (std::size_t i = 0; i < n; ++i) {
       SnapshotBead bead;
@@ -284,6 +284,7 @@ class GsdReader final : public SnapshotReader {
       if (e.id >= names_.size() || bytes_of(e.type) == 0 || e.m == 0 || e.frame > index.size())
         fail_at(0, "is damaged: an entry of its index has no name or no type.");
       index_[{names_[e.id], e.frame}] = e;
+      has_images_ = has_images_ || names_[e.id] == "particles/image";
       n_frames_ = std::max(n_frames_, e.frame + 1);
     }
     if (n_frames_ == 0) fail_at(0, "the file holds no frame.");
@@ -380,6 +381,7 @@ class GsdReader final : public SnapshotReader {
   std::map<std::pair<std::string, std::uint64_t>, IndexEntry> index_;
   SnapshotColumns has_;
   std::uint64_t frame_ = 0, n_frames_ = 0;
+  bool has_images_ = false;  ///< a frame states how many periods beads have crossed
 };
 
 }  // namespace

@@ -72,7 +72,8 @@ struct SnapshotColumns {
   bool contacts = false;             ///< only when written
   std::vector<std::string> numbers;  ///< names of further numbers of each bead, only when written
   std::array<bool, 3> velocity{}, spin{};
-  /// Coordinates that are wrapped into the period and come without the number of periods.
+  /// Coordinates that come without the number of periods. They are wrapped unless beads lie outside the
+  /// period.
   std::array<bool, 3> wrapped{};
 };
 
@@ -89,6 +90,8 @@ class SnapshotReader {
   virtual bool next(Snapshot& s) = 0;
   /// Known once the first snapshot has been read.
   [[nodiscard]] virtual const SnapshotColumns& columns() const = 0;
+  /// What was assumed where the file is silent, as a sentence; otherwise empty.
+  [[nodiscard]] virtual std::string assumption() const { return {}; }
   /// A vector of the file in the axes of Snapshot.
   [[nodiscard]] virtual Vec3 upright(const Vec3& v) const { return v; }
   /// Bytes of the file, and how many of them have been read.

@@ -12,6 +12,7 @@
 #include "core/hdf5_self_contained.hpp"
 #include "trajectory/formats/contact_lists.hpp"
 #include "trajectory/formats/drive_motion_group.hpp"
+#include "trajectory/formats/foreign_rows.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 #include "trajectory/formats/h5md_names.hpp"
 #include "trajectory/formats/recorded_group.hpp"
@@ -33,6 +34,7 @@ struct H5mdReader::Impl {
   }
   h5::Series force, moment, rim_speed;
   ContactListReader contacts, contact_forces;
+  std::optional<ForeignRows> foreign;  ///< of another program
 
   std::string particle_group() const;
   void open();
@@ -41,6 +43,7 @@ struct H5mdReader::Impl {
   std::vector<ContactMemory> contacts_of(std::size_t frame) const;
   std::vector<ContactForce> contact_forces_of(std::size_t frame) const;
   void read_box(const std::string& group);
+  void read_foreign_box(const std::string& group);
   bool is_planar() const;
   void read_parameters();
   void read_conditions();
@@ -103,6 +106,9 @@ void H5mdReader::Impl::open() {
   const std::string group = particle_group();
   open_columns(group);
   read_box(group);
+  if (!h5::exists(file.get(), "twincell"))
+    foreign.emplace(open_object(file.get(), group).get(), id, position, info.box, info.n_beads,
+                    path.string());
   read_parameters();
   require_ranges(info, path.string());
 }
@@ -235,7 +241,11 @@ void H5mdReader::Impl::read_box(const std::string& group) {
     info.box.side_tilt = {tilt[0], tilt[1]};
     return;
   }
-  // A file of another program has only the H5MD box. Its corner is at the origin.
+  read_foreign_box(group);
+}
+
+/// A file of another program has only the H5MD box. Its corner is at the origin.
+void H5mdReader::Impl::read_foreign_box(const std::string& group) {
   info.box.dimension = is_planar() ? 2 : 3;
   info.box.boundary = {Boundary::open, Boundary::open, Boundary::open};
   if (!h5::exists(file.get(), group + "/box")) return;
@@ -243,11 +253,24 @@ void H5mdReader::Impl::read_box(const std::string& group) {
   const auto words = h5::read_text_attribute(box.get(), "boundary");
   for (std::size_t a = 0; a < std::min<std::size_t>(words.size(), 3); ++a)
     info.box.boundary[a] = boundary_of(words[a]);
-  std::vector<double> edges = h5::read_dataset<double>(box.get(), "edges");
-  if (edges.empty() && h5::exists(box.get(), "edges/value"))
-    edges = h5::read_dataset<double>(box.get(), "edges/value");
-  if (edges.size() == 3) info.box.upper = Vec3(edges.data());
-  if (edges.size() >= 9) info.box.upper = Vec3(edges[0], edges[4], edges[8]);
+  const auto set = [&](const std::vector<double>& edges) {
+    if (edges.size() == 3) info.box.upper = Vec3(edges.data());
+    if (edges.size() == 9) info.box.upper = Vec3(edges[0], edges[4], edges[8]);
+  };
+  set(h5::read_dataset<double>(box.get(), "edges"));
+  if (!h5::exists(box.get(), "edges/value")) return;
+  const h5::Series edges(box.get(), "edges/value");
+  std::size_t each = 1;
+  for (const hsize_t n : edges.record()) each *= n;
+  if (!edges || (each != 3 && each != 9))
+    refuse(group + "/box/edges", "a box has 3 or 9 numbers in each frame.");
+  std::vector<double> first(each), now(each);
+  for (std::size_t f = 0; f < edges.size(); ++f) {
+    edges.read(f, h5::native<double>(), f == 0 ? first.data() : now.data());
+    if (f > 0 && now != first)
+      refuse(group + "/box/edges", fmt::format("the box of frame {} is not that of the first one.", f));
+  }
+  if (edges.size() > 0) set(first);
 }
 
 /// Whether all beads of the first frame have the same y.
@@ -414,6 +437,7 @@ void H5mdReader::read(std::size_t index, Frame& frame) const {
       r.phase.read(index, h5::native<int>(), &frame.phase);
       r.cycle.read(index, h5::native<std::int64_t>(), &frame.cycle);
     }
+    if (r.foreign) r.foreign->restore(index, frame);
     require_ranges(frame, index, r.info, r.path.string());
   } catch (const RunError& e) {
     r.refuse(fmt::format("frame {}", index), e.what());

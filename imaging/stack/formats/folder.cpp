@@ -127,9 +127,10 @@ std::unique_ptr<FrameSource> open_folder(const fs::path& folder) {
                        : fmt::format("holds no PNG, TIFF, JPEG, BMP or PGM picture; it holds {}: name that "
                                      "file.",
                                      stack));
-  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
-    return natural_less(a.filename().string(), b.filename().string());
-  });
+  std::vector<std::string> names;
+  for (const fs::path& file : files) names.push_back(file.filename().string());
+  sort_as_frames(names);
+  for (std::size_t i = 0; i < files.size(); ++i) files[i] = folder / names[i];
   return std::make_unique<Folder>(std::move(files), others);
 }
 

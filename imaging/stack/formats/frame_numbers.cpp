@@ -7,9 +7,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <set>
 
 #include "core/counted.hpp"
 #include "core/median.hpp"
+#include "imaging/stack/frame_source.hpp"
 
 namespace twincell::imaging::frames {
 namespace {
@@ -23,22 +26,55 @@ struct Numbered {
   std::string name;
 };
 
-/// The numbered pictures of each series. A name without a number, or with one of more than 18 digits, is in
-/// none.
-std::map<std::string, std::vector<Numbered>> series_of(const std::vector<std::string>& names) {
+/// The last number in a name, with what precedes it, and the sign between the two, if there is one.
+struct Parts {
+  std::string series;
+  char sign = 0;
+  Number number = 0;
+};
+
+/// Nothing for a name without a number, or with one of more than 18 digits.
+std::optional<Parts> parts_of(const std::string& name) {
   constexpr const char* kDigits = "0123456789";
   constexpr std::size_t kMostDigits = 18;
+  const std::string stem = std::filesystem::path(name).stem().string();
+  const std::size_t last = stem.find_last_of(kDigits);
+  if (last == std::string::npos) return std::nullopt;
+  const std::size_t before = stem.find_last_not_of(kDigits, last);
+  const std::size_t first = before == std::string::npos ? 0 : before + 1;
+  if (last + 1 - first > kMostDigits) return std::nullopt;
+  Parts parts;
+  std::from_chars(stem.data() + first, stem.data() + last + 1, parts.number);
+  const bool has_sign = first > 0 && (stem[first - 1] == '+' || stem[first - 1] == '-');
+  if (has_sign) parts.sign = stem[first - 1];
+  parts.series = stem.substr(0, first - (has_sign ? 1 : 0));
+  return parts;
+}
+
+/// Whether the numbers of all names have signs, and both occur in one series: cameras with a trigger in the
+/// middle of a recording count so. A '-' alone separates a name from its number.
+bool have_signs(const std::vector<std::string>& names) {
+  std::map<std::string, std::set<char>> signs;
+  for (const std::string& name : names) {
+    const auto parts = parts_of(name);
+    if (!parts || parts->sign == 0) return false;
+    signs[parts->series].insert(parts->sign);
+  }
+  return !signs.empty() && std::ranges::all_of(signs, [](const auto& s) { return s.second.size() == 2; });
+}
+
+/// The numbered pictures of each series.
+std::map<std::string, std::vector<Numbered>> series_of(const std::vector<std::string>& names) {
+  const bool with_signs = have_signs(names);
   std::map<std::string, std::vector<Numbered>> series;
   for (const std::string& name : names) {
-    const std::string stem = std::filesystem::path(name).stem().string();
-    const std::size_t last = stem.find_last_of(kDigits);
-    if (last == std::string::npos) continue;
-    const std::size_t before = stem.find_last_not_of(kDigits, last);
-    const std::size_t first = before == std::string::npos ? 0 : before + 1;
-    if (last + 1 - first > kMostDigits) continue;
-    Number number = 0;
-    std::from_chars(stem.data() + first, stem.data() + last + 1, number);
-    series[stem.substr(0, first)].push_back({number, name});
+    const auto parts = parts_of(name);
+    if (!parts) continue;
+    if (with_signs)
+      series[parts->series].push_back({parts->sign == '-' ? -parts->number : parts->number, name});
+    else
+      series[parts->series + (parts->sign != 0 ? std::string(1, parts->sign) : std::string())].push_back(
+          {parts->number, name});
   }
   return series;
 }
@@ -79,6 +115,16 @@ std::string repeated_numbers(std::vector<Numbered> pictures) {
 }
 
 }  // namespace
+
+void sort_as_frames(std::vector<std::string>& names) {
+  std::ranges::sort(names, natural_less);
+  if (!have_signs(names)) return;
+  std::ranges::stable_sort(names, [](const std::string& a, const std::string& b) {
+    const Parts x = *parts_of(a), y = *parts_of(b);
+    if (x.series != y.series) return natural_less(x.series, y.series);
+    return (x.sign == '-' ? -x.number : x.number) < (y.sign == '-' ? -y.number : y.number);
+  });
+}
 
 std::vector<std::string> notes_on_names(const std::vector<std::string>& names) {
   constexpr std::size_t kNamed = 3;

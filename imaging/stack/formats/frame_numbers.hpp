@@ -8,6 +8,11 @@
 
 namespace twincell::imaging::frames {
 
+/// Sorts names as the frames follow each other: in natural order, f_2 before f_10. Where all numbers have
+/// signs and both signs occur, as img-40 ... img-01, img+00 ... of a trigger in the middle, by the signed
+/// number.
+void sort_as_frames(std::vector<std::string>& names);
+
 /// Sentences for the user. The number of a picture is the last run of digits in its name without the
 /// extension; what precedes it names the series.
 ///
@@ -15,7 +20,7 @@ namespace twincell::imaging::frames {
 /// - Numbers that several pictures of a series have: copies, or one frame in two formats.
 /// - Numbers that are skipped, if at least three quarters of the steps between neighbours are equal, and all
 ///   are multiples of that step. Numbers that are times do not step evenly and give no sentence.
-/// \param names in natural order
+/// \param names as sort_as_frames orders them
 std::vector<std::string> notes_on_names(const std::vector<std::string>& names);
 
 }  // namespace twincell::imaging::frames

@@ -184,6 +184,78 @@ TEST_F(ForeignFormats, ExtendedXyzOfOtherPrograms) {
   EXPECT_TRUE(t.info().radius.empty());
 }
 
+// Ten beads in a row of spacing 1 drift by 0.7 a frame through a period of 10 that begins at -5.
+std::string drifting_row(const std::string& head, bool wrapped) {
+  std::string text;
+  for (int f = 0; f < 20; ++f) {
+    text +=
+        "10\nLattice=\"10 0 0 0 10 0 0 0 1\" Origin=\"-5 -5 -0.5\" " + head + fmt::format(" Time={}\n", f);
+    for (int i = 0; i < 10; ++i) {
+      const double x = -4.5 + i + 0.7 * f;
+      text += fmt::format("{} 0 0\n", wrapped ? x - 10 * std::floor((x + 5) / 10) : x);
+    }
+  }
+  return text;
+}
+
+TEST_F(ForeignFormats, WrappedXyzIsUnwrappedAndOtherIsNot) {
+  for (const bool wrapped : {true, false}) {
+    put_file(file(), drifting_row("pbc=\"T F F\" Properties=pos:R:3", wrapped));
+    const MemoryTrajectory t = read("xyz", {});
+    EXPECT_EQ(t.info().box.lower.x(), 0);
+    EXPECT_EQ(t.info().box.upper.x(), 10);
+    for (int f = 0; f < 20; ++f)
+      for (std::size_t i = 0; i < 10; ++i)
+        EXPECT_NEAR(t.frames()[static_cast<std::size_t>(f)].position[i].x(),
+                    0.5 + static_cast<double>(i) + 0.7 * f, 1e-12)
+            << "the cell begins where the period does";
+  }
+  // What export wrote is not wrapped, even if no bead happens to leave the period.
+  put_file(file(), drifting_row("creator=twincell pbc=\"T F F\" Properties=pos:R:3", true));
+  EXPECT_NEAR(read("xyz", {}).frames()[1].position[9].x(), 0.2, 1e-12);
+}
+
+TEST_F(ForeignFormats, XyzWithoutPbcIsPeriodic) {
+  put_file(file(), drifting_row("Properties=pos:R:3", true));
+  const ForeignTrajectory source(file(), foreign_format("xyz", ""), {});
+  EXPECT_EQ(source.info().box.boundary[0], Boundary::periodic);
+  EXPECT_NE(source.assumption().find("by the rule of extended XYZ the box is periodic"), std::string::npos);
+  put_file(file(), drifting_row("pbc=\"F F F\" Properties=pos:R:3", true));
+  EXPECT_EQ(ForeignTrajectory(file(), foreign_format("xyz", ""), {}).assumption(), "");
+}
+
+TEST_F(ForeignFormats, ThePeriodIsThatOfTheFileWhereverTheCellBegins) {
+  put_file(file(), drifting_row("pbc=\"T T F\" Properties=pos:R:3", false));
+  const ForeignTrajectory source(file(), foreign_format("xyz", ""), {.origin = Vec3(1, 2, 0)});
+  EXPECT_EQ(source.info().box.size().x(), 10);
+  EXPECT_EQ(source.info().box.size().z(), 10);
+  EXPECT_EQ(refusal("xyz", drifting_row("pbc=\"T F F\" Properties=pos:R:3", false), {.width = 9}),
+            "--cell-width: is 9, but the file is periodic along x with a period of 10.");
+}
+
+TEST_F(ForeignFormats, AnXyzBeadThatVanishesNeedsAnIdentity) {
+  EXPECT_EQ(
+      refusal("xyz", "2\nTime=0 Properties=pos:R:3\n1 1 0\n2 1 0\n1\nTime=1 Properties=pos:R:3\n2 1 0\n"),
+      "f:5: the frame has 1 beads, the first one has 2; without the property id:I:1 the missing ones are "
+      "unknown.");
+  put_file(file(),
+           "2\nTime=0 Properties=pos:R:3:id:I:1\n1 1 0 4\n2 1 0 9\n1\nTime=1 "
+           "Properties=pos:R:3:id:I:1\n2 1 0 9\n");
+  const ForeignTrajectory source(file(), foreign_format("xyz", ""), {});
+  EXPECT_EQ(source.ids(), (std::vector<std::int64_t>{4, 9}));
+}
+
+TEST_F(ForeignFormats, RadiiThatChangeAreNamed) {
+  const auto said = [&](double later) {
+    put_file(file(), fmt::format("1\nTime=0 Properties=pos:R:3:radius:R:1\n1 1 0 0.5\n1\nTime=1 "
+                                 "Properties=pos:R:3:radius:R:1\n1 1 0 {}\n",
+                                 later));
+    return ForeignTrajectory(file(), foreign_format("xyz", ""), {}).assumption();
+  };
+  EXPECT_EQ(said(0.5), "");
+  EXPECT_EQ(said(0.6), "the radii of beads change from frame to frame: each keeps its first one.");
+}
+
 TEST_F(ForeignFormats, DamagedXyz) {
   const std::string head = "Lattice=\"8 0 0 0 9 0 0 0 1\" Properties=pos:R:3";
   EXPECT_EQ(refusal("xyz", "many\n"), "f:1: 'many' is not a whole number.");

@@ -22,7 +22,7 @@ constexpr double kPi = std::numbers::pi;
 
 struct Shaker {
   double z0 = 3, amplitude = 12, period = 20, phi = 0.7;
-  double noise = 0.05, jitter = 0, second = 0;
+  double noise = 0.05, jitter = 0, second = 0, second_phase = 0;
   double outliers = 0;  ///< fraction, up to 40 px upwards: beads mistaken for the plate
   double missing = 0;   ///< fraction
   int frames = 200;
@@ -34,8 +34,9 @@ std::vector<double> heights_of(const Shaker& s, std::mt19937_64& generator) {
   std::vector<double> h;
   for (int f = 0; f < s.frames; ++f) {
     const double theta = 2 * kPi * (f + s.jitter * normal(generator)) / s.period + s.phi;
-    double z =
-        s.z0 + s.amplitude * (std::sin(theta) + s.second * std::sin(2 * theta)) + s.noise * normal(generator);
+    double z = s.z0 +
+               s.amplitude * (std::sin(theta) + s.second * std::sin(2 * theta + 2 * kPi * s.second_phase)) +
+               s.noise * normal(generator);
     if (uniform(generator) < s.outliers) z += 1 + 39 * uniform(generator);
     h.push_back(uniform(generator) < s.missing ? std::nan("") : z);
   }
@@ -115,6 +116,10 @@ TEST(DriveFit, AShakerThatIsNoSineIsReportedAndASineIsNot) {
   const DriveFit bent = fit_drive(heights_of({.second = 0.01}, generator));
   EXPECT_NEAR(*bent.second_harmonic, 0.01, 4 * *bent.second_harmonic_error);
   EXPECT_LT(*bent.p_sinusoidal, 1e-6);
+  for (const double phase : {0.1, 0.35, 0.8}) {
+    const DriveFit d = fit_drive(heights_of({.second = 0.05, .second_phase = phase}, generator));
+    EXPECT_NEAR(*d.second_harmonic_phase, phase, 0.01);
+  }
   EXPECT_FALSE(bent.notes.empty());
   int alarms = 0;
   const int trials = 300;

@@ -131,6 +131,26 @@ TEST(Differences, ARealOneIsCalledSoAndAnUnknownErrorToo) {
   EXPECT_NE(only(runs).attribution().find("no error is known"), std::string::npos);
 }
 
+// An error that is missing on one side is not 0.
+TEST(Differences, WithoutAnErrorOnOneSideThereIsNoConclusion) {
+  for (const Side side : {Side::experiment, Side::simulation}) {
+    Runs runs = {run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.5, 0.01)};
+    for (auto& r : runs)
+      if (r.side == side) r.results[0].interval.reset();
+    const Difference d = only(runs);
+    EXPECT_FALSE(d.is_real());
+    EXPECT_NE(d.attribution().find(std::string("the error of the ") + side_name(side) + " is not known"),
+              std::string::npos)
+        << d.attribution();
+  }
+  // The scatter between seeds contains that within each of the simulations.
+  Runs runs = {run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.5, 0.01),
+               run(Side::simulation, 0.51, 0.01), run(Side::simulation, 0.49, 0.01)};
+  for (auto& r : runs)
+    if (r.side == Side::simulation) r.results[0].interval.reset();
+  EXPECT_TRUE(only(runs).is_real());
+}
+
 TEST(Differences, ANumberThatNeverChangedHasNoKnownError) {
   const Difference d = only({run(Side::experiment, 0.22, 1e-17), run(Side::simulation, 0.23, 1e-17)});
   EXPECT_FALSE(d.statistics);

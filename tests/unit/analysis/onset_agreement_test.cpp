@@ -22,7 +22,11 @@ std::string said(const std::vector<PhaseBoundary>& boundaries) {
 
 TEST(OnsetAgreement, IntervalsWithACommonPointAreCompatible) {
   const PhaseBoundary e = onset(Side::experiment, 1.6, 2.5);
-  EXPECT_EQ(agreement_of(e, onset(Side::simulation, 2.5, 3)), OnsetAgreement::compatible);
+  EXPECT_EQ(agreement_of(e, onset(Side::simulation, 2.49, 3)), OnsetAgreement::compatible);
+  // At 2.5 the one bed convects and the other one does not.
+  EXPECT_EQ(agreement_of(e, onset(Side::simulation, 2.5, 3)), OnsetAgreement::different);
+  EXPECT_EQ(agreement_of(onset(Side::experiment, {}, 0.16), onset(Side::simulation, 0.16, {})),
+            OnsetAgreement::different);
   EXPECT_EQ(agreement_of(e, onset(Side::simulation, 2.51, 3)), OnsetAgreement::different);
   EXPECT_EQ(agreement_of(e, onset(Side::simulation, 1, 1.59)), OnsetAgreement::different);
   EXPECT_EQ(agreement_of(e, onset(Side::simulation, 2, {})), OnsetAgreement::compatible);

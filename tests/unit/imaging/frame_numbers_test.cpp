@@ -17,6 +17,20 @@ std::vector<std::string> joined(std::vector<std::string> a, const std::vector<st
   return a;
 }
 
+TEST(FrameNumbers, SignedNumbersOfATriggerInTheMiddleAreInOrder) {
+  std::vector<std::string> names = {"img+01.png", "img-02.png", "img+00.png", "img-10.png", "img-01.png"};
+  sort_as_frames(names);
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"img-10.png", "img-02.png", "img-01.png", "img+00.png", "img+01.png"}));
+  names.clear();
+  for (int k = -40; k < 40; ++k) names.push_back(fmt::format("img{:+03}.png", k));
+  EXPECT_TRUE(notes_on_names(names).empty());
+  // A dash alone is no sign.
+  names = {"img-10.png", "img-2.png", "img-1.png"};
+  sort_as_frames(names);
+  EXPECT_EQ(names, (std::vector<std::string>{"img-1.png", "img-2.png", "img-10.png"}));
+}
+
 TEST(FrameNumbers, WholeSeriesGiveNoSentence) {
   EXPECT_TRUE(notes_on_names({}).empty());
   EXPECT_TRUE(notes_on_names({"only.png"}).empty());

@@ -55,6 +55,23 @@ imaging::CellDescription read(const CellDraft& draft, const CellSurvey& s) {
   return imaging::read_cell(folder / "CELL.toml");
 }
 
+TEST(CellDraft, AClearSecondHarmonicIsPartOfTheDrive) {
+  CellSurvey s = survey();
+  const CellAnswers answers{.sigma_mm = 2, .frequency_hz = 20};
+  s.drive->second_harmonic = 0.005;
+  s.drive->second_harmonic_error = 0.0002;
+  s.drive->second_harmonic_phase = 0.25;
+  EXPECT_EQ(draft_cell(s, answers).find("drive.harmonics"), nullptr) << "too small to matter";
+  s.drive->second_harmonic = 0.2;
+  s.drive->second_harmonic_error = 0.05;
+  EXPECT_EQ(draft_cell(s, answers).find("drive.harmonics"), nullptr) << "not clear";
+  s.drive->second_harmonic_error = 0.001;
+  const imaging::CellDescription cell = read(draft_cell(s, answers), s);
+  ASSERT_EQ(cell.harmonics.size(), 1U);
+  EXPECT_NEAR(cell.harmonics[0].amplitude, 0.2, 1e-6);
+  EXPECT_NEAR(cell.harmonics[0].phase, 0.25, 1e-6);
+}
+
 // Beads that are no plain discs look as large as the light makes them; where they touch they are one diameter
 // apart.
 TEST(CellDraft, TheScaleOfShadedBeadsIsTheDistanceOfTouchingOnes) {

@@ -169,15 +169,20 @@ TEST(Slip, TheIntervalCoversAlthoughBeadsSlipTogether) {
   std::bernoulli_distribution event(0.3);
   const double truth = 0.3 * 2 * kColumns / eligible;
   int covered = 0, seeds = 1000;
-  for (int s = 0; s < seeds; ++s) {
+  for (int s = 0; s < 1000; ++s) {
     std::vector<int> shift = {0};
     for (int j = 1; j < 61; ++j) shift.push_back(shift.back() + (event(generator) ? 1 : 0));
     const auto results = film(c, 61, [&](std::size_t i, int j) {
       return Vec3(c.row[i] >= 2 ? shift[static_cast<std::size_t>(j)] : 0, 0, 0);
     });
     const auto& interval = find_result(results, "p_s").interval;
+    if (!interval) {  // the scatter between periods is not known where they seem to be correlated
+      --seeds;
+      continue;
+    }
     covered += interval->low <= truth && truth <= interval->high ? 1 : 0;
   }
+  EXPECT_GT(seeds, 950);
   test::validate({"V5.5", "coverage, %, of the interval of p_s, rows slipping as one", 95, 2, "binomial"},
                  100.0 * covered / seeds);
 }

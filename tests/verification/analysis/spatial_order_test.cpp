@@ -531,6 +531,34 @@ TEST(Profiles, PackingAndTemperatureOfKnownBeds) {
   EXPECT_NEAR(find_result(results, "T_x_z").values[3], 0, 1e-12);
 }
 
+// A square lattice of discs drifts through a period of 10.4 along z, in which no slab of thickness 1 fits
+// evenly.
+TEST(Profiles, AlongAPeriodAreThoseOfTheCell) {
+  std::vector<Frame> frames;
+  Box box;
+  box.upper = Vec3(10, 1, 10.4);
+  box.boundary = {Boundary::periodic, Boundary::open, Boundary::periodic};
+  for (int f = 0; f < 520; ++f) {
+    Frame frame;
+    frame.step = f;
+    for (int x = 0; x < 10; ++x)
+      for (int z = 0; z < 8; ++z) {
+        frame.position.emplace_back(x, 0, 1.3 * z + 0.21 * f);
+        frame.velocity.emplace_back(0, 0, f % 2 == 0 ? 1 : -1);
+      }
+    frames.push_back(frame);
+  }
+  const auto results = analyze(film(frames, box));
+  const Result &z = find_result(results, "profile_z"), &phi = find_result(results, "phi_z");
+  ASSERT_EQ(phi.values.size(), 10U);
+  EXPECT_NEAR(z.values.front(), 0.52, 1e-12);
+  EXPECT_NEAR(z.values.back(), 10.4 - 0.52, 1e-12);
+  for (const double each : phi.values) EXPECT_NEAR(each, 80 * kPi / 4 / 104, 2e-3);
+  for (const double t : find_result(results, "T_z_z").values) EXPECT_NEAR(t, 1, 0.01);
+  EXPECT_FALSE(find_result(results, "phi_top").present());
+  EXPECT_NE(find_result(results, "phi_top").absent.find("periodic along z"), std::string::npos);
+}
+
 TEST(Profiles, ASlabThatIsEmptyHalfOfTheTimeHasHalfTheTemperatureOverFrames) {
   // Two beads separate at speed 2 relative to their centre of mass, which itself moves.
   std::vector<Frame> frames;

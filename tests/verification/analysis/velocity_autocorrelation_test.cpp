@@ -54,6 +54,14 @@ TEST(VelocityAutocorrelation, OfOscillatorsIsTheCosine) {
   EXPECT_DOUBLE_EQ(lag.back(), static_cast<double>(analysis::kLongestVelocityLag));
 }
 
+TEST(VelocityAutocorrelation, OfBeadsThatAllMoveAlikeIsAbsent) {
+  MemoryTrajectory t = empty(2, Vec3(10, 1, 10), false);
+  for (int f = 0; f < 50; ++f)
+    add(t, std::vector<Vec3>(kBeads, Vec3(1, 0, 1)), std::vector<Vec3>(kBeads, Vec3(0.7, 0, -0.1 * f)));
+  const auto results = analysis::analyze(t, {.only = {"vacf"}});
+  EXPECT_FALSE(analysis::find_result(results, "vacf").present());
+}
+
 TEST(VelocityAutocorrelation, OfBrownianBeadsDecaysExponentially) {
   std::mt19937_64 random(4);
   const auto c = values_of(brownian(0.8, 4000, random), "vacf");

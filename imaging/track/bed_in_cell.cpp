@@ -1,0 +1,80 @@
+#include "imaging/track/bed_in_cell.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/median.hpp"
+
+namespace twincell::imaging {
+
+BedInCell::BedInCell(TrajectorySink& writer, const TrajectoryInfo& info, const CellDescription& cell,
+                     int height_px)
+    : writer_(writer), info_(info) {
+  if (!cell.origin || !cell.pixels_per_sigma) return;
+  if (info.box.boundary[0] == Boundary::wall) width_ = cell.width.value_or(0);
+  plate_ = info.columns.plate_height && cell.origin->y_px < height_px;
+}
+
+void BedInCell::append(const Frame& frame) {
+  constexpr std::size_t kFewest = 5;
+  double left = HUGE_VAL, right = -HUGE_VAL, low = HUGE_VAL;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < frame.position.size(); ++i) {
+    if (!frame.present(i) || !std::isfinite(frame.position[i].x()) || !std::isfinite(frame.position[i].z()))
+      continue;
+    const double radius = info_.radius.empty() ? 0.5 : info_.radius[i];
+    left = std::min(left, frame.position[i].x() - radius);
+    right = std::max(right, frame.position[i].x() + radius);
+    low = std::min(low, frame.position[i].z() - radius);
+    ++n;
+  }
+  if (n >= kFewest) {
+    beads_.push_back(static_cast<double>(n));
+    left_.push_back(left);
+    right_.push_back(width_ - right);
+    if (plate_ && std::isfinite(frame.plate_height)) below_.push_back(low - frame.plate_height);
+  }
+  writer_.append(frame);
+}
+
+std::vector<std::string> BedInCell::doubts() const {
+  constexpr double kGap = 0.35, kRests = 0.05, kLayers = 2;
+  constexpr std::size_t kFewest = 10;  // frames
+  std::vector<std::string> all;
+  if (left_.size() < kFewest) return all;
+  const auto side = [&](const char* wall, double gap) {
+    if (gap > kGap)
+      all.push_back(fmt::format(
+          "the beads come no closer to the {} wall than {:.2f} bead diameters: the wall is elsewhere than "
+          "cell.width and camera.origin_px state, or the picture does not show the beads beside it.",
+          wall, gap));
+    else if (gap < -kGap)
+      all.push_back(
+          fmt::format("the beads reach {:.2f} bead diameters into the {} wall: it is elsewhere than "
+                      "cell.width and camera.origin_px state.",
+                      -gap, wall));
+  };
+  if (width_ > 0 && upper_median(beads_) >= kLayers * width_) {
+    side("left", upper_median(left_));
+    side("right", upper_median(right_));
+  }
+  if (below_.size() < kFewest) return all;
+  std::vector<double> gaps = below_;
+  const auto at = gaps.begin() + static_cast<std::ptrdiff_t>(kRests * static_cast<double>(gaps.size()));
+  std::nth_element(gaps.begin(), at, gaps.end());
+  if (*at > kGap)
+    all.push_back(
+        fmt::format("the lowest bead comes no closer to the plate than {:.2f} bead diameters: the plate is "
+                    "elsewhere than camera.origin_px and the phases state.",
+                    *at));
+  else if (*at < -kGap)
+    all.push_back(
+        fmt::format("beads are up to {:.2f} bead diameters beneath the plate: it is elsewhere than "
+                    "camera.origin_px and the phases state.",
+                    -*at));
+  return all;
+}
+
+}  // namespace twincell::imaging

@@ -1,0 +1,34 @@
+#pragma once
+/// \file
+/// Whether the tracked beads fill the cell that is stated: a bed of several layers touches both side walls,
+/// and rests on the plate in a part of each cycle.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "imaging/cell/cell.hpp"
+#include "trajectory/trajectory.hpp"
+
+namespace twincell::imaging {
+
+/// Hands frames on to a writer and notes how close the beads come to the side walls and to the plate.
+class BedInCell : public TrajectorySink {
+ public:
+  /// \param writer, info outlive this object \param height_px of the picture: a plate below it is not checked
+  BedInCell(TrajectorySink& writer, const TrajectoryInfo& info, const CellDescription& cell, int height_px);
+  void append(const Frame& frame) override;
+  /// What contradicts the stated cell, in sentences: over the frames, the median gap at a side wall, and the
+  /// gap at the plate that 5 % of the frames fall below, each if it exceeds 0.35 bead diameters to either
+  /// side. Walls are checked for beds of two layers and more.
+  [[nodiscard]] std::vector<std::string> doubts() const;
+
+ private:
+  TrajectorySink& writer_;
+  const TrajectoryInfo& info_;
+  double width_ = 0;                                  ///< sigma; 0: not checked
+  bool plate_ = false;                                ///< checked
+  std::vector<double> left_, right_, below_, beads_;  ///< by frame: gaps, sigma, and the number of beads
+};
+
+}  // namespace twincell::imaging
