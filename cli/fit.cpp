@@ -33,9 +33,13 @@ std::string text_of(const calibration::CurveFit& fit) {
   std::string text = fmt::format("{}: {}   ({})\n{} used", fit.law->name, fit.law->formula, fit.law->source,
                                  counted(fit.n_used, "point"));
   if (fit.n_outside > 0) text += fmt::format(", {} outside the window", fit.n_outside);
-  if (fit.n_zero > 0) text += fmt::format(", {} zero and left out", fit.n_zero);
+  if (fit.n_zero > 0)
+    text += fit.likelihood ? fmt::format(", {} of them zero", fit.n_zero)
+                           : fmt::format(", {} zero and left out", fit.n_zero);
   if (fit.n_invalid > 0) text += fmt::format(", {} invalid and left out", fit.n_invalid);
-  text += fit.weighted ? "; weighted by their errors\n\n" : "; not weighted, errors from the scatter\n\n";
+  text += fit.likelihood ? "; maximum likelihood of the counts\n\n"
+          : fit.weighted ? "; weighted by their errors\n\n"
+                         : "; not weighted, errors from the scatter\n\n";
   text += fmt::format("{:<10}  {:<14}  {:<12}  95 % interval\n", "parameter", "value", "error");
   for (std::size_t p = 0; p < report.values.size(); ++p) {
     text += fmt::format("{:<10}  {:<14.8g}  ", report.names[p], report.values[p]);

@@ -579,31 +579,55 @@ void SeriesFit::add_impacts(BounceFit& out) const {
   add_mean(out, covariance);
 }
 
-// Best linear unbiased mean. If the impacts differ by more than their errors, its error is scaled up.
+/// Best linear unbiased mean of correlated values, its error, and chi^2 of the values about it.
+struct WeightedMean {
+  double mean = 0, error = 0, chi2 = 0;
+};
+
+WeightedMean weighted_mean(const Eigen::VectorXd& e, const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd one = Eigen::VectorXd::Ones(e.size());
+  const auto factored = covariance.ldlt();
+  const Eigen::VectorXd w = factored.solve(one);
+  const double mean = w.dot(e) / w.dot(one);
+  const Eigen::VectorXd left = e - mean * one;
+  return {mean, 1 / std::sqrt(w.dot(one)), left.dot(factored.solve(left))};
+}
+
+// If e_n differs from impact to impact by more than its errors, it scatters by itself: the variance that
+// brings chi^2 to its expectation is added to that of each impact (Paule & Mandel 1982). A common factor,
+// which was tried, keeps the weights of the film's noise, under which one impact may count for all.
 void SeriesFit::add_mean(BounceFit& out, const Eigen::MatrixXd& covariance) const {
   const auto n = static_cast<Eigen::Index>(out.impacts.size());
   Eigen::VectorXd e(n);
   for (Eigen::Index i = 0; i < n; ++i) e[i] = out.impacts[static_cast<std::size_t>(i)].restitution;
-  const Eigen::VectorXd one = Eigen::VectorXd::Ones(n);
-  const Eigen::VectorXd w = covariance.ldlt().solve(one);
-  out.restitution = w.dot(e) / w.dot(one);
-  const Eigen::VectorXd left = e - out.restitution * one;
-  const double chi2 = left.dot(covariance.ldlt().solve(left));
   const double freedom = static_cast<double>(n) - 1;
-  const double excess = freedom > 0 ? chi2 / freedom : 1;
-  // Scale only beyond three standard deviations of chi^2, which itself fluctuates for few impacts.
-  const bool grown = freedom > 0 && chi2 > freedom + 3 * std::sqrt(2 * freedom);
-  out.restitution_error = std::sqrt((grown ? excess : 1) / w.dot(one));
+  WeightedMean mean = weighted_mean(e, covariance);
+  const double chi2 = mean.chi2;
+  constexpr double kGrown = 3;  // standard deviations of chi^2, which fluctuates for few impacts
+  if (freedom > 0 && chi2 > freedom + kGrown * std::sqrt(2 * freedom)) {
+    constexpr int kHalvings = 60;
+    const auto scattered = [&](double variance) {
+      return weighted_mean(e, covariance + variance * Eigen::MatrixXd::Identity(n, n));
+    };
+    double low = 0, high = (e.array() - e.mean()).square().sum() + covariance.trace();
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = (low + high) / 2;
+      (scattered(middle).chi2 > freedom ? low : high) = middle;
+    }
+    mean = scattered(high);
+  }
+  out.restitution = mean.mean;
+  out.restitution_error = mean.error;
   constexpr double kClear = 5;
   if (out.drag_error > 0 && out.drag < -kClear * out.drag_error)
     out.notes.push_back(
         fmt::format("the drag is negative, {:.3g} +- {:.1g}: air does not push a bead; check times, "
                     "heights and the stated gravity",
                     out.drag, out.drag_error));
-  if (grown)
+  if (freedom > 0 && chi2 > freedom + kGrown * std::sqrt(2 * freedom))
     out.notes.push_back(
         fmt::format("the impacts differ by more than the film's noise (chi^2 = {:.3g} of {:g}): e_n depends "
-                    "on the impact, or the bead spins; the error is scaled up accordingly",
+                    "on the impact, or the bead spins; the error contains this scatter",
                     chi2, freedom));
 }
 

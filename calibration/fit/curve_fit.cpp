@@ -24,9 +24,15 @@ constexpr double kCorrelated = 0.99;
 /// A residual sum of squares below this share of the ordinates' sum of squares is rounding error.
 constexpr double kExact = 1e-26;
 
+/// A frequency of counts, zeros included.
+struct Frequency {
+  double x, y, trials;
+};
+
 struct Selected {
   std::vector<FitPoint> points;
   bool weighted = false;
+  std::vector<Frequency> frequencies;  ///< all points in the window, if each has trials and no other error
 };
 
 double error_of(const DataPoint& p, bool logarithmic) {
@@ -41,7 +47,7 @@ Selected select(const Law& law, const std::vector<DataPoint>& points, const FitW
                 CurveFit& result) {
   Selected selected;
   double low = INFINITY, high = -INFINITY, largest_x = 0, largest_y = 0;
-  bool errors = true;
+  bool errors = true, counts = law.logarithmic;
   for (const DataPoint& p : points) {
     PointUse use = PointUse::used;
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !(p.sigma >= 0) || (law.positive_x && p.x <= 0) ||
@@ -60,6 +66,10 @@ Selected select(const Law& law, const std::vector<DataPoint>& points, const FitW
     result.n_zero += use == PointUse::zero ? 1 : 0;
     result.n_outside += use == PointUse::outside ? 1 : 0;
     result.n_invalid += use == PointUse::invalid ? 1 : 0;
+    if (use == PointUse::zero || use == PointUse::used) {
+      counts = counts && p.trials > 0 && p.sigma == 0 && p.y <= 1;
+      selected.frequencies.push_back({p.x, p.y, p.trials});
+    }
     if (use == PointUse::zero && p.trials > 0)
       result.upper_limits.push_back(analysis::binomial_interval(0, p.trials, "trials").high);
     if (use != PointUse::used) continue;
@@ -83,6 +93,7 @@ Selected select(const Law& law, const std::vector<DataPoint>& points, const FitW
         {.file = {}, .key = "points"},
         fmt::format("no {} is larger than {:g} in magnitude; use another unit, or the squares are 0",
                     largest == largest_x ? "x" : "y", largest));
+  if (!counts) selected.frequencies.clear();
   selected.weighted = errors;
   if (!errors)
     for (FitPoint& p : selected.points) p.error = 1;
@@ -133,6 +144,38 @@ FitReport best_of_starts(const Law& law, const Selected& selected) {
   }
   if (!best) throw RunError(fmt::format("The fit of {} did not converge: {}", law.name, failure));
   return *best;
+}
+
+/// Maximum likelihood of the frequencies from the parameters of `report`, which it replaces; so are the
+/// points, by working ordinates ln p + (y - p)/p with the errors sqrt((1 - p)/(n p)). \returns whether it
+/// converged
+bool maximise_likelihood(const Law& law, Selected& selected, FitReport& report) {
+  constexpr int kRounds = 100;
+  constexpr double kConverged = 1e-9, kMostLog = -1e-9, kFarthest = 10;
+  Selected working{.points = {}, .weighted = true, .frequencies = {}};
+  FitReport now = report;
+  for (int round = 0; round < kRounds; ++round) {
+    working.points.clear();
+    for (const Frequency& f : selected.frequencies) {
+      const double log_p = std::min(law.value(f.x, now.values.data()), kMostLog), p = std::exp(log_p);
+      if (!(p > 0)) return false;
+      working.points.push_back(
+          {f.x, log_p + std::min((f.y - p) / p, kFarthest), std::sqrt((1 - p) / (f.trials * p))});
+    }
+    FitReport next = from_start(law, working, now.values);
+    double change = 0;
+    for (std::size_t k = 0; k < next.values.size(); ++k) {
+      if (!next.usable || !std::isfinite(next.values[k])) return false;
+      change = std::max(change, std::abs(next.values[k] - now.values[k]) / (1 + std::abs(next.values[k])));
+    }
+    now = std::move(next);
+    if (change > kConverged) continue;
+    report = std::move(now);
+    selected.points = std::move(working.points);
+    selected.weighted = true;
+    return true;
+  }
+  return false;
 }
 
 double correlation_of(const std::vector<FitPoint>& points, const std::vector<double>& curve) {
@@ -231,7 +274,8 @@ void add_intervals(CurveFit& result, const Selected& selected) {
   if (fit.standard_errors.empty()) return;
   const double freedom = static_cast<double>(result.n_used - fit.values.size());
   const double reach = result.weighted ? analysis::student_t_95(1e9) : analysis::student_t_95(freedom);
-  const std::string method = result.weighted
+  const std::string method = result.likelihood ? "covariance at the maximum of the likelihood"
+                             : result.weighted
                                  ? "covariance of the points' own errors"
                                  : fmt::format("covariance and scatter, {} degrees of freedom", freedom);
   for (std::size_t p = 0; p < fit.values.size(); ++p)
@@ -335,6 +379,14 @@ CurveFit fit_curve(const Law& law, const std::vector<DataPoint>& points, const F
   Selected selected = select(law, points, window, result);
   result.weighted = selected.weighted;
   result.fit = best_of_starts(law, selected);
+  if (!selected.frequencies.empty()) {
+    result.likelihood = maximise_likelihood(law, selected, result.fit);
+    if (result.likelihood)
+      result.weighted = true, result.n_used += result.n_zero;
+    else if (result.n_zero > 0)
+      result.notes.emplace_back(
+          "the likelihood of the counts has no maximum near this fit, which leaves zeros out");
+  }
 
   std::sort(selected.points.begin(), selected.points.end(),
             [](const FitPoint& p, const FitPoint& q) { return p.x < q.x; });

@@ -46,10 +46,13 @@ struct CurveFit {
   const Law* law = nullptr;
   FitReport fit;
   bool weighted = false;  ///< true: by the points' errors; false: equal weights, error from scatter
+  bool likelihood =
+      false;  ///< the parameters maximise the binomial likelihood of all frequencies, zeros included
   std::vector<std::optional<analysis::Interval>> intervals;  ///< 95 % interval of each parameter
   std::vector<PointUse> use;                                 ///< for each input point
   std::size_t n_used = 0;
-  std::size_t n_zero = 0;     ///< in the window, but y = 0 and the law is logarithmic: left out
+  std::size_t n_zero =
+      0;  ///< in the window, but y = 0 and the law is logarithmic: left out unless `likelihood`
   std::size_t n_outside = 0;  ///< outside the window
   std::size_t n_invalid = 0;  ///< not finite, y < 0 in a logarithmic law, x <= 0 where it must be positive
   std::vector<double> upper_limits;  ///< 95 % limits of zero points with known trials, in input order
@@ -69,6 +72,12 @@ struct CurveFit {
 /// weighted by sigma, or by the binomial error of a frequency, var = y (1 - y)/trials, if every point used
 /// has one; in ln y the error is divided by y. Otherwise all points have equal weight and the error is
 /// estimated from the scatter (Student's t).
+///
+/// A logarithmic law of frequencies that all have their trials is fitted by maximum likelihood instead, zeros
+/// included: y n counts of n trials with the probability exp(law), by iteratively reweighted least squares
+/// (McCullagh & Nelder 1989, chapter 2). With weights from the observed frequencies, and without the zeros,
+/// rare counts would be too high: E_b of 12 points with 1000 trials and E_b = 8 was 7.1. chi^2 is then
+/// Pearson's.
 ///
 /// A law that contains a simpler one (Law::nested) is compared with it by the reduction of the sum of squares
 /// (F test; chi^2 if weighted). If p > 0.05, its `lost` parameters are reported as undetermined, because data

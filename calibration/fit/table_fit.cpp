@@ -116,6 +116,7 @@ nlohmann::json json_of(const CurveFit& fit, const std::vector<DataPoint>& points
       j["covariance"].back().push_back(number(report.covariance(r, c)));
   }
   j["weighted"] = fit.weighted;
+  j["likelihood"] = fit.likelihood;
   j["n"] = {
       {"used", fit.n_used}, {"zero", fit.n_zero}, {"outside", fit.n_outside}, {"invalid", fit.n_invalid}};
   j["upper_limits"] = fit.upper_limits;
@@ -134,7 +135,8 @@ nlohmann::json json_of(const CurveFit& fit, const std::vector<DataPoint>& points
   for (std::size_t i = 0; i < points.size(); ++i) {
     nlohmann::json point = {
         {"x", number(points[i].x)}, {"y", number(points[i].y)}, {"use", use_name(fit.use[i])}};
-    if (fit.use[i] == PointUse::used) point["fit"] = number(fit.at(points[i].x));
+    if (fit.use[i] == PointUse::used || (fit.likelihood && fit.use[i] == PointUse::zero))
+      point["fit"] = number(fit.at(points[i].x));
     j["points"].push_back(point);
   }
   return j;

@@ -17,7 +17,7 @@ std::string slips(const TemporaryFolder& folder) {
   std::string text = "# made up: E_b = 7\nK_m, p_s, trials\n";
   for (const double k : {2.0, 2.5, 3.0, 4.0, 6.0, 10.0})
     text += fmt::format("{}, {:.9f}, 40000\n", k, std::exp(-7 / k));
-  text += "1.2, 0, 40000\n";
+  text += "0.6, 0, 40000\n";
   put_file(folder / "p_s.csv", text);
   return (folder / "p_s.csv").string();
 }
@@ -31,7 +31,7 @@ TEST(Fit, TextJsonAndPictureSayTheSame) {
                                 "trials", "--json", "-q", "-o", folder / "fit"});
   ASSERT_EQ(json.code, 0) << json.err;
   const auto document = nlohmann::json::parse(json.out);
-  EXPECT_NEAR(document["parameters"]["E_b"]["value"].get<double>(), 7, 1e-4);
+  EXPECT_NEAR(document["parameters"]["E_b"]["value"].get<double>(), 7, 0.01);
   EXPECT_EQ(document["n"]["zero"], 1);
   EXPECT_EQ(document["upper_limits"].size(), 1U);
   EXPECT_TRUE(document["weighted"]);
@@ -47,7 +47,9 @@ TEST(Fit, TextJsonAndPictureSayTheSame) {
   const Ran text = run_program({"fit", table, "--law", "arrhenius", "--trials", "trials"});
   EXPECT_EQ(text.code, 0) << text.err;
   EXPECT_NE(text.out.find("E_b"), std::string::npos);
-  EXPECT_NE(text.out.find("1 zero and left out"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("7 points used, 1 of them zero; maximum likelihood of the counts"),
+            std::string::npos)
+      << text.out;
 }
 
 TEST(Fit, Refusals) {
