@@ -59,32 +59,25 @@ void add_locating_options(CLI::App& verb, imaging::LocatingRequest& request) {
                   "default: all");
 }
 
-std::string command_words(const imaging::LocatingRequest& request) {
-  const imaging::LocatorOptions usual;
+namespace {
+std::string words_of(const imaging::LocatingRequest& request, bool of_discs) {
   std::string words;
-  const auto add = [&](const char* name, const std::string& value) {
-    if (!value.empty()) words += fmt::format(" {} {}", name, shell_word(value));
-  };
-  if (request.locator.finder != usual.finder) add("--locator", request.locator.finder);
-  if (request.locator.find.min_score != usual.find.min_score)
-    add("--min-score", fmt::format("{}", request.locator.find.min_score));
-  add("--flat", request.flat);
-  add("--background", request.background);
-  add("--roi", request.roi);
-  add("--mask", request.mask);
-  add("--frames", request.frames);
+  for (const imaging::GivenOption& option : imaging::given_options(request)) {
+    // The page of `locate --view` sets the least score itself.
+    if (option.of_discs != of_discs || option.name == "--min-explained") continue;
+    words += " " + option.name;
+    for (const std::string& value : option.values) words += " " + shell_word(value);
+  }
   return words;
+}
+}  // namespace
+
+std::string command_words(const imaging::LocatingRequest& request) {
+  return words_of(request, false);
 }
 
 std::string command_words_of_discs(const imaging::LocatingRequest& request) {
-  const imaging::LocatorOptions usual;
-  std::string words;
-  if (!request.diameters.empty()) words += fmt::format(" --diameter {}", fmt::join(request.diameters, " "));
-  if (request.dark) words += " --dark";
-  if (request.locator.preprocess.bright) words += " --bright";
-  if (request.locator.refine.method != usual.refine.method)
-    words += " --refine " + request.locator.refine.method;
-  return words;
+  return words_of(request, true);
 }
 
 std::unique_ptr<imaging::FrameSource> open_for_locating(const std::string& stack,

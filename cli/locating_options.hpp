@@ -19,7 +19,7 @@ struct Common;
 void add_locating_options(CLI::App& verb, imaging::LocatingRequest& request);
 
 /// The options of a request that say which part of the stack is searched and how, as words of a shell, each
-/// after a space; empty: none differs from its default.
+/// after a space, without --min-explained; empty: none differs from its default.
 std::string command_words(const imaging::LocatingRequest& request);
 
 /// The options of a request that say what the discs are: diameter, polarity, refiner.

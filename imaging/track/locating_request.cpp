@@ -89,23 +89,34 @@ std::unique_ptr<FrameSource> prepare_frames(std::unique_ptr<FrameSource> frames,
                                    : flattened(std::move(frames), flat_of_blank(*picture));
 }
 
-std::string option_for_frames(const LocatingRequest& r) {
+std::vector<GivenOption> given_options(const LocatingRequest& r) {
   const LocatorOptions& l = r.locator;
   const LocatorOptions usual;
-  for (const auto& [given, option] : {std::pair(r.diameters.size() > 1, "--diameter"),
-                                      {r.dark, "--dark"},
-                                      {l.preprocess.bright, "--bright"},
-                                      {!r.flat.empty(), "--flat"},
-                                      {!r.background.empty(), "--background"},
-                                      {!r.roi.empty(), "--roi"},
-                                      {!r.mask.empty(), "--mask"},
-                                      {!r.frames.empty(), "--frames"},
-                                      {r.refine_given || l.refine.method != usual.refine.method, "--refine"},
-                                      {l.finder != usual.finder, "--locator"},
-                                      {l.find.min_score != usual.find.min_score, "--min-score"},
-                                      {l.judge.min_score != usual.judge.min_score, "--min-explained"}})
-    if (given) return option;
-  return {};
+  std::vector<GivenOption> given;
+  const auto add = [&](bool is_given, const char* name, std::vector<std::string> values,
+                       bool of_discs = false) {
+    if (is_given) given.push_back({name, std::move(values), of_discs});
+  };
+  std::vector<std::string> diameters;
+  for (const double d : r.diameters) diameters.push_back(fmt::format("{}", d));
+  add(!diameters.empty(), "--diameter", diameters, true);
+  add(r.dark, "--dark", {}, true);
+  add(l.preprocess.bright, "--bright", {}, true);
+  add(l.refine.method != usual.refine.method, "--refine", {l.refine.method}, true);
+  add(l.finder != usual.finder, "--locator", {l.finder});
+  add(l.find.min_score != usual.find.min_score, "--min-score", {fmt::format("{}", l.find.min_score)});
+  add(l.judge.min_score != usual.judge.min_score, "--min-explained", {fmt::format("{}", l.judge.min_score)});
+  for (const auto& [name, value] :
+       {std::pair{"--flat", &r.flat}, std::pair{"--background", &r.background}, std::pair{"--roi", &r.roi},
+        std::pair{"--mask", &r.mask}, std::pair{"--frames", &r.frames}})
+    add(!value->empty(), name, {*value});
+  return given;
+}
+
+std::string option_for_frames(const LocatingRequest& request) {
+  for (const GivenOption& option : given_options(request))
+    if (option.name != "--diameter" || option.values.size() > 1) return option.name;
+  return request.refine_given ? "--refine" : "";
 }
 
 Located in_whole_picture(Located located, const Region& region) {

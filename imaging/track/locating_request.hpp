@@ -42,8 +42,16 @@ FrameRange frames_of(const LocatingRequest& request);
 /// \param locator as locator_of returned it \throws InputError, ConfigError
 std::unique_ptr<FrameSource> prepare_frames(std::unique_ptr<FrameSource> frames, const std::string& stack,
                                             const LocatingRequest& request, const LocatorOptions& locator);
-/// The option, other than one diameter, that says how the beads of frames are located, as "--bright"; empty
-/// if none is given.
+/// An option of a request as the user would write it.
+struct GivenOption {
+  std::string name;                 ///< "--roi"
+  std::vector<std::string> values;  ///< none: a flag
+  bool of_discs = false;            ///< says what the discs are; otherwise, where and how they are searched
+};
+/// The options that differ from their defaults.
+std::vector<GivenOption> given_options(const LocatingRequest& request);
+/// The first of them that says how the beads of frames are located, which is any but one diameter; empty if
+/// none is given.
 std::string option_for_frames(const LocatingRequest& request);
 /// A frame that was located in a region, with positions in the whole picture and without discs that the mask
 /// cuts.
