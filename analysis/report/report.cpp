@@ -82,6 +82,12 @@ std::string real_differences(const Comparison& c) {
       fmt::format("{} of the {} compared numbers really differ{}: {}{}.", n, c.differences.size(),
                   n == 1 ? "s" : "", fmt::join(names, heights ? "; " : ", "),
                   n > kMostNamed ? fmt::format(" and {} more", n - kMostNamed) : "");
+  // Two standard errors are exceeded by chance in 4.6 % of the cases.
+  constexpr double kByChance = 0.0455;
+  const double by_chance = kByChance * static_cast<double>(c.differences.size() - without_error);
+  if (by_chance >= 1)
+    text += fmt::format(" By chance alone, about {:.0f} of the {} with known errors would.", by_chance,
+                        c.differences.size() - without_error);
   if (without_seeds > 0)
     text += fmt::format(
         " The error of {} contains no scatter between seeds, as there is one simulation of each start: other "
