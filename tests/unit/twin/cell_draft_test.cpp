@@ -55,6 +55,15 @@ imaging::CellDescription read(const CellDraft& draft, const CellSurvey& s) {
   return imaging::read_cell(folder / "CELL.toml");
 }
 
+TEST(CellDraft, AWallIsTiltedOnlyIfItMatters) {
+  CellSurvey s = survey();
+  const CellAnswers answers{.sigma_mm = 2, .frequency_hz = 20};
+  s.geometry->fit.values[1] = 0.08;  // 80 standard errors
+  EXPECT_EQ(draft_cell(s, answers).find("cell.side_tilt"), nullptr);
+  s.geometry->fit.values[1] = 0.3;
+  EXPECT_NE(draft_cell(s, answers).find("cell.side_tilt"), nullptr);
+}
+
 TEST(CellDraft, AClearSecondHarmonicIsPartOfTheDrive) {
   CellSurvey s = survey();
   const CellAnswers answers{.sigma_mm = 2, .frequency_hz = 20};
