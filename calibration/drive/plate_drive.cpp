@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <memory>
 #include <optional>
 #include <utility>
 
 #include "calibration/camera/cell_geometry.hpp"
 #include "calibration/drive/drive_fit.hpp"
+#include "core/constants.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
 #include "imaging/stack/open_frames.hpp"
@@ -155,6 +157,22 @@ void compare_omega(DriveCheck& check, const std::string& what, const DriveFit& s
                     error, stated);
 }
 
+/// Compares the second harmonic with the stated one, or with none, as vectors of amplitude and phase.
+void compare_harmonic(DriveCheck& check, const std::string& what, const DriveFit& seen, const Drive& stated) {
+  constexpr double kLeast = 0.03;  // of A; its acceleration is four times as large
+  if (!seen.second_harmonic || stated.recorded || !check.disagreement.empty()) return;
+  const Harmonic second = stated.harmonics.empty() ? Harmonic{} : stated.harmonics.front();
+  const std::complex<double> there = std::polar(*seen.second_harmonic, kTurn * *seen.second_harmonic_phase),
+                             said = std::polar(second.amplitude, kTurn * second.phase);
+  if (std::abs(there - said) <= std::max(kLeast, kErrors * *seen.second_harmonic_error)) return;
+  const std::string cell = second.amplitude > 0
+                               ? fmt::format("states {:.3g} at phase {:.2g}", second.amplitude, second.phase)
+                               : std::string("states none");
+  check.disagreement = fmt::format(
+      "{} has a second harmonic of {:.3g} +- {:.1g} of A at phase {:.2g}, but the cell {} (drive.harmonics)",
+      what, *seen.second_harmonic, *seen.second_harmonic_error, *seen.second_harmonic_phase, cell);
+}
+
 /// The period is known in frames, without a frame rate and a scale.
 void compare_period(DriveCheck& check, const std::string& what, const DriveFit& seen, int stated) {
   if (stated <= 0 || !check.disagreement.empty()) return;
@@ -298,6 +316,7 @@ DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::files
     compare_amplitude(check, what, drive->amplitude, kShare, scale);
     if (fixed_phases) compare_period(check, what, seen, cell.phase_lock.frames_per_cycle);
     compare_omega(check, what, seen, drive->omega, cell.scale.t0_s());
+    compare_harmonic(check, what, seen, *drive);
   } catch (const InputError& e) {  // no plate in the picture, or it does not move
     check.not_comparable = e.what();
     look_for_plate_elsewhere(check, cell, edges, drive->amplitude);

@@ -55,7 +55,8 @@ std::optional<std::string> recorded_disagreement(const TrajectoryInfo& info);
 /// \param fixed_phases whether the phases of the frames follow from the stated frames per cycle; otherwise
 /// the period is not compared. Also compares omega with the stated frame rate divided by the stated frames
 /// per cycle, with or without a plate in the picture. A plate that is more than two bead diameters from
-/// camera.origin_px is a difference too. \pre the cell states drive and scale, otherwise nothing is
+/// camera.origin_px is a difference too, and so is a second harmonic that differs from the stated one by more
+/// than 3 % of A and five standard errors. \pre the cell states drive and scale, otherwise nothing is
 /// compared
 DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::filesystem::path& stack,
                           const imaging::FrameRange& range, int threads, Progress& progress,

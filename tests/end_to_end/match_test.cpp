@@ -453,6 +453,67 @@ TEST(Match, AStatedDriveIsHeldAgainstTheBedWhereThePlateIsNotInThePicture) {
   }
 }
 
+TEST(Match, ASecondHarmonicIsHeldAgainstThePlate) {
+  const TemporaryFolder folder;
+  const fs::path run = folder / "run.h5", stack = folder / "frames";
+  ASSERT_EQ(
+      run_program({"simulate", fs::path(TWINCELL_SOURCE_DIR) / "data_samples/demo/experiment.toml", "-q",
+                   "-o", run, "--set", "drive.gamma=0.9", "--set", "drive.harmonics=[[0.1, 0.25]]", "--set",
+                   "time.discard=1", "--set", "time.cycles=3"})
+          .code,
+      0);
+  ASSERT_EQ(run_program({"render", run, "-q", "-o", stack, "--pixels-per-sigma", "12"}).code, 0);
+  const auto noted = [&](const fs::path& cell) {
+    const Ran ran = run_program({"track", stack, "--cell", cell, "-o", folder / "t.h5", "--force"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return ran.err.find("the plate in the frames has a second harmonic of 0.1") != std::string::npos;
+  };
+  EXPECT_FALSE(noted(stack / "CELL.toml"));
+  std::ifstream in(stack / "CELL.toml");
+  std::ofstream out(folder / "sine.toml");
+  for (std::string line; std::getline(in, line);)
+    if (!line.starts_with("harmonics")) out << line << "\n";
+  out.close();
+  EXPECT_TRUE(noted(folder / "sine.toml"));
+  // `new` measures it and writes it.
+  ASSERT_EQ(run_program({"new", stack, "-q", "-o", folder / "new.toml", "--drive-gamma", "0.9"}).code, 0);
+  EXPECT_FALSE(noted(folder / "new.toml"));
+  const imaging::CellDescription found = imaging::read_cell(folder / "new.toml");
+  ASSERT_EQ(found.harmonics.size(), 1U);
+  EXPECT_NEAR(found.harmonics[0].amplitude, 0.1, 0.002);
+  EXPECT_NEAR(found.harmonics[0].phase, 0.25, 0.005);
+}
+
+// The shaker is off: one frame, 40 times with the noise of a camera.
+TEST(Match, ABedAtRestContradictsAStatedAmplitude) {
+  const TemporaryFolder folder;
+  const fs::path stack = folder / "still";
+  fs::create_directory(stack);
+  const cv::Mat frame = cv::imread((kStack / "frame_00000.png").string(), cv::IMREAD_UNCHANGED);
+  cv::RNG random(3);
+  for (int f = 0; f < 60; ++f) {
+    cv::Mat noise(frame.size(), CV_16S), noisy;
+    random.fill(noise, cv::RNG::NORMAL, 0, 1);
+    cv::add(frame, noise, noisy, cv::noArray(), CV_8U);
+    cv::imwrite((stack / fmt::format("frame_{:05}.png", f)).string(), noisy);
+  }
+  const Ran refused = run_program({"match", stack, kStack / "CELL.toml", "-o", folder / "twin", "--twins",
+                                   "1", "--no-film", "--set", "time.steps_per_contact=20", "-q"});
+  EXPECT_EQ(refused.code, 2) << refused.err;
+  EXPECT_NE(
+      refused.err.find("the beads stand still in the frames, but the cell states a plate of A = 0.9 sigma"),
+      std::string::npos)
+      << refused.err;
+  // `analyze` repeats what `track` has noted.
+  const Ran noted = run_program({"track", stack, "--cell", kStack / "CELL.toml", "-o", folder / "t.h5"});
+  EXPECT_NE(noted.err.find("the beads stand still"), std::string::npos) << noted.err;
+  const Ran analysed = run_program({"analyze", folder / "t.h5", "--only", "s_b"});
+  EXPECT_EQ(analysed.code, 0) << analysed.err;
+  EXPECT_NE(analysed.err.find("the stated drive does not fit the film: the beads stand still"),
+            std::string::npos)
+      << analysed.err;
+}
+
 TEST(Match, AStatedFrequencyIsHeldAgainstThePlate) {
   for (const StatedDrive& stated : stated_drives())
     expect_the_drive_checked(kStack, stated, "the plate in the frames");
