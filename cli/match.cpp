@@ -117,8 +117,8 @@ twin::Twin add_twin(const Common& common, const MatchOptions& o, const twin::Twi
   if (!twin.missing_beads.empty())
     note(common, fmt::format("{}: {} ({} are in its first packing).", of_stack.stack.string(),
                              twin.missing_beads, twin.beads));
-  if (!twin.scale_doubt.empty())
-    note(common, fmt::format("{}: {}.", of_stack.stack.string(), twin.scale_doubt));
+  for (const std::string& doubt : {twin.paler_doubt, twin.surplus_tracks, twin.scale_doubt})
+    if (!doubt.empty()) note(common, fmt::format("{}: {}.", of_stack.stack.string(), doubt));
   if (twin.records_transient())
     note(common,
          fmt::format(
