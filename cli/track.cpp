@@ -163,8 +163,9 @@ void run(TrackOptions& o, const Common& common) {
     note(common,
          "the stated drive does not fit the film: " + film.check.disagreement + " (--trust-stated-drive).");
   if (!stack.phases.warning.empty()) note(common, stack.phases.warning + ".");
-  if (const std::string missing = stack.missing_beads(); !missing.empty()) note(common, missing + ".");
-  if (const std::string doubt = stack.scale_doubt(cell); !doubt.empty()) note(common, doubt + ".");
+  for (const std::string& doubt :
+       {stack.missing_beads(), stack.paler_doubt(), stack.surplus_tracks(), stack.scale_doubt(cell)})
+    if (!doubt.empty()) note(common, doubt + ".");
   // Write the trajectory, then the table.
   Provenance provenance = common.provenance();
   provenance.config = cell.text;
@@ -200,7 +201,8 @@ void run(TrackOptions& o, const Common& common) {
                              {"tracks", stack.n_tracks},
                              {"slots", plan.info.n_beads},
                              {"outside_cell", stack.outside_cell},
-                             {"wrong_radius", stack.wrong_radius}};
+                             {"wrong_radius", stack.wrong_radius},
+                             {"paler", stack.paler}};
   document.update(nlohmann::json::parse(plan.info.tracking_json));
   if (const nlohmann::json said = imaging::restrictions(o.film.locating); !said.is_null())
     document["restrictions"] = said;

@@ -222,6 +222,8 @@ void track_experiment(imaging::FrameSource& frames, FilmedCell& filmed, calibrat
   cell.phase_lock.frames_per_cycle = stack.phases.frames_per_cycle;
   twin.phases = stack.phases;
   twin.missing_beads = stack.missing_beads();
+  twin.paler_doubt = stack.paler_doubt();
+  twin.surplus_tracks = stack.surplus_tracks();
   twin.scale_doubt = stack.scale_doubt(cell);
   imaging::TrackPlan plan = imaging::plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
   if (checks_drive(filmed, options) && check.by.empty()) {

@@ -107,6 +107,26 @@ cv::Mat1b regions_darker_than(float limit, const cv::Mat1f& darkness, double dis
   return regions;
 }
 
+/// The darkness above which thick regions are walls: 0.75, or 0.75 of the darkest level if nothing is as dark
+/// as that, as with red walls and beads in grey levels. Below kPalest the contrast is measured instead
+/// (PreprocessOptions::contrast). A share of the darkest level in every picture would take blurred crystals
+/// for walls.
+float least_wall_darkness(const cv::Mat1f& darkness) {
+  constexpr float kDark = 0.75F, kOfDarkest = 0.93F;  // a wall is as even as that
+  constexpr float kPalest = 0.5F;
+  constexpr double kSamples = 20000, kDarkest = 0.02;  // share of the pixels
+  const int stride =
+      std::max(1, static_cast<int>(std::sqrt(static_cast<double>(darkness.total()) / kSamples)));
+  std::vector<float> levels;
+  for (int y = stride / 2; y < darkness.rows; y += stride)
+    for (int x = stride / 2; x < darkness.cols; x += stride) levels.push_back(darkness(y, x));
+  if (levels.empty()) return kDark;
+  const auto at =
+      levels.end() - 1 - static_cast<std::ptrdiff_t>(kDarkest * static_cast<double>(levels.size()));
+  std::nth_element(levels.begin(), at, levels.end());
+  return *at > kPalest && kOfDarkest * *at < kDark ? kDark * *at : kDark;
+}
+
 /// Gaussian blur that does not reach into the spare columns beside the picture.
 void blurred(const cv::Mat1f& picture, double by, cv::Mat1f& out) {
   cv::GaussianBlur(picture, out, {0, 0}, by, by, cv::BORDER_DEFAULT | cv::BORDER_ISOLATED);
@@ -236,14 +256,15 @@ std::optional<cv::Mat1b> unevenly_lit_regions(const Prepared& image, double radi
 // picture then replaces the first.
 cv::Mat1b wall_regions(const Prepared& image, bool bright, double radius_px, double in_radii) {
   const cv::Mat1f& darkness = image.darkness;
-  constexpr float kDark = 0.75F, kOfDarkest = 0.93F;
+  constexpr float kOfDarkest = 0.93F;
   constexpr double kSharp = 1.3, kSmooth = 1;  // px
   constexpr double kOutOfFocus = 0.22;         // of the radius
 
   // Distances from an edge to either side, in units of the blur.
   constexpr double kTail = 2, kFromDark = 0.7, kFromDarkest = 1.55;
   const auto uneven = bright ? unevenly_lit_regions(image, radius_px, in_radii) : std::nullopt;
-  cv::Mat1b regions = uneven ? *uneven : regions_darker_than(kDark, darkness, in_radii * radius_px);
+  cv::Mat1b regions =
+      uneven ? *uneven : regions_darker_than(least_wall_darkness(darkness), darkness, in_radii * radius_px);
   cv::Mat1b bars = straight_bars(darkness, 2 * radius_px, 2 * in_radii * radius_px);
   if (regions.empty() && bars.empty()) return {};
   const double blur = blur_of(darkness);

@@ -44,9 +44,9 @@ double interpolated(const cv::Mat1f& grey, double x, double y) {
          v * ((1 - u) * static_cast<double>(grey(j + 1, i)) + u * static_cast<double>(grey(j + 1, i + 1)));
 }
 
-/// The rim of a disc. \param others discs that may hide parts of it
+/// The rim of a disc. \param others discs that may hide parts of it, \param walls regions that do
 Rim rim_of(const cv::Mat1f& grey, const Detection& d, const std::vector<const Detection*>& others,
-           double noise) {
+           const cv::Mat1b& walls, double noise) {
   const double width = width_of(d);
   const auto at = [&](int step) { return d.radius + width * (2.0 * step / (kSteps - 1) - 1); };
   Rim rim;
@@ -60,6 +60,7 @@ Rim rim_of(const cv::Mat1f& grey, const Detection& d, const std::vector<const De
       for (int step = kSteps - 1; step >= 0 && seen; --step) {
         const double x = d.x + at(step) * std::cos(turn), y = d.y + at(step) * std::sin(turn);
         seen = x >= 0 && y >= 0 && x <= grey.cols - 1 && y <= grey.rows - 1 &&
+               (walls.empty() || walls(cvRound(y), cvRound(x)) == 0) &&
                std::none_of(others.begin(), others.end(), [&](const Detection* o) {
                  const double dx = x - o->x, dy = y - o->y, far = o->radius + kApart;
                  return dx * dx + dy * dy < far * far;
@@ -116,7 +117,8 @@ double quantile(std::vector<double> values, double share) {
 }  // namespace
 
 double rim_variation(const cv::Mat& grey, const std::vector<Detection>& discs,
-                     const std::vector<double>& radii_px, const std::vector<Detection>& others) {
+                     const std::vector<double>& radii_px, const std::vector<Detection>& others,
+                     const cv::Mat1b& walls) {
   constexpr std::size_t kEnough = 3;        // discs that show what they have in common
   constexpr double kRepresentative = 0.25;  // least share of discs that show their rims
   if (discs.empty() || std::min(grey.cols, grey.rows) < 2) return 0;
@@ -139,7 +141,7 @@ double rim_variation(const cv::Mat& grey, const std::vector<Detection>& discs,
   }
   std::vector<Rim> rims;
   for (std::size_t b = 0; b < discs.size(); ++b) {
-    Rim rim = rim_of(levels, discs[b], neighbours[b], noise);
+    Rim rim = rim_of(levels, discs[b], neighbours[b], walls, noise);
     if (rim.turns.empty()) continue;
     rim.size = nearest_size(discs[b].radius, radii_px);
     rims.push_back(std::move(rim));

@@ -35,20 +35,25 @@ LocatorOptions at_rim(const cv::Mat& frame, LocatorOptions settled, const std::v
 }
 
 /// The settings, with pale discs if the frame shows a second population of the beads, as of pale tracers: at
-/// least three discs of one darkness, below that of which discs usually count.
+/// least three discs of one darkness, some of them below that of which discs usually count. Some of tracers
+/// at that darkness are found without, so that those below it may be fewer than three.
 LocatorOptions with_pale_discs(const cv::Mat& frame, const LocatorOptions& settled) {
-  constexpr double kUsual = 0.4;   // darkness
-  constexpr double kAlike = 0.12;  // largest scatter of the darkness, relative
+  constexpr double kUsual = 0.4, kNear = 0.46;  // darkness
+  constexpr double kAlike = 0.12;               // largest scatter of the darkness, relative
   constexpr std::size_t kFewest = 3;
   if (model_of(settled.refine) != DiscModel::plain) return settled;
   LocatorOptions options = settled;
   options.refine.pale = true;
   const std::vector<Detection> with = locate(frame, options).beads;
   std::vector<double> pale;
-  for (const Detection& b : with)
-    if (b.darkness < kUsual) pale.push_back(b.darkness);
-  if (pale.size() < kFewest || with.size() < locate(frame, settled).beads.size() + pale.size())
-    return settled;
+  std::size_t below = 0;
+  for (const Detection& b : with) {
+    if (b.darkness < kNear) pale.push_back(b.darkness);
+    if (b.darkness < kUsual) ++below;
+  }
+  if (pale.size() < kFewest) return settled;
+  const std::size_t without = locate(frame, settled).beads.size();
+  if (with.size() < without + std::max<std::size_t>(below, 1)) return settled;
   const double typical = upper_median(pale);
   for (double& d : pale) d = std::abs(d - typical);
   return 1.4826 * upper_median(std::move(pale)) < kAlike * typical ? options : settled;

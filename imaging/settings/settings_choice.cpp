@@ -89,7 +89,7 @@ TriedSettings try_one(const ExaminedRegion& region, const LocatorOptions& given,
   TriedSettings tried{settings, evidence.total, beads.size()};
   // A stated size is that of round objects. Rims of patterned discs vary with direction.
   if (given.diameter_px <= 0 && model_of(options.refine) != DiscModel::circle) {
-    tried.rim_variation = rim_variation(region.picture, beads, radii, other_discs(located.dropped));
+    tried.rim_variation = rim_variation(region.picture, beads, radii, other_discs(located.dropped), walls);
     tried.rim_shift = rim_shift(beads, evidence.rims, radii);
   }
   return tried;

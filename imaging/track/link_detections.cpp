@@ -110,6 +110,16 @@ PhaseTable determine_phases(const DetectionStore& located, const LinkOptions& li
   return table;
 }
 
+/// Smallest and largest number of beads of a frame; 0, 0 without frames.
+std::pair<std::size_t, std::size_t> fewest_and_most(const DetectionStore& frames) {
+  std::size_t fewest = frames.empty() ? 0 : frames.count(0), most = fewest;
+  for (std::size_t f = 1; f < frames.size(); ++f) {
+    fewest = std::min(fewest, frames.count(f));
+    most = std::max(most, frames.count(f));
+  }
+  return {fewest, most};
+}
+
 }  // namespace
 
 std::vector<std::int64_t> LinkedDetections::broken_tracers() const {
@@ -123,17 +133,23 @@ std::vector<std::int64_t> LinkedDetections::broken_tracers() const {
 
 std::string LinkedDetections::missing_beads() const {
   constexpr double kConstant = 0.95;
-  std::size_t fewest = frames.empty() ? 0 : frames.count(0), most = fewest;
-  for (std::size_t f = 1; f < frames.size(); ++f) {
-    fewest = std::min(fewest, frames.count(f));
-    most = std::max(most, frames.count(f));
-  }
+  const auto [fewest, most] = fewest_and_most(frames);
   if (static_cast<double>(fewest) >= kConstant * static_cast<double>(most)) return {};
   return fmt::format(
       "the frames hold {} to {} beads: beads leave the picture, or are not found in every frame; N_l, the "
       "results and "
       "a twin count only those that are seen",
       fewest, most);
+}
+
+std::string LinkedDetections::surplus_tracks() const {
+  constexpr double kUsual = 1.2;
+  const std::size_t most = fewest_and_most(frames).second;
+  if (static_cast<double>(n_tracks) <= kUsual * static_cast<double>(most)) return {};
+  return fmt::format(
+      "there are {} tracks, but at most {} beads in a frame: tracks are broken, beads enter and leave, or "
+      "other objects, such as digits, are taken for beads (twincell locate --overlay shows them)",
+      n_tracks, most);
 }
 
 namespace {

@@ -50,6 +50,9 @@ struct LinkedDetections {
   /// A sentence, without a full stop, if some frame holds less than 0.95 of the beads of another: beads leave
   /// the picture, or are not found in every frame. Empty otherwise.
   [[nodiscard]] std::string missing_beads() const;
+  /// A sentence, without a full stop, if there are more than 1.2 times as many tracks as beads in any frame.
+  /// Empty otherwise.
+  [[nodiscard]] std::string surplus_tracks() const;
 };
 
 /// Determines the phase of each frame, then links. A frame taken twice is linked with interval 0. A stated

@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "imaging/cell/plate_row.hpp"
 #include "imaging/phase/trigger_list.hpp"
+#include "imaging/refine/paler_discs.hpp"
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/settings/size_of_scale.hpp"
 #include "imaging/track/inside_cell.hpp"
@@ -27,7 +28,7 @@ double bytes_of(const cv::Mat& frame) {
 /// The beads of all frames that are inside the cell, and the counts of excluded ones.
 struct Detections {
   DetectionStore frames;
-  std::size_t outside_cell = 0, wrong_radius = 0;
+  std::size_t outside_cell = 0, wrong_radius = 0, paler = 0;
   bool cut_by_frame = false;  ///< at least one bead is cut by the frame
 };
 
@@ -97,6 +98,10 @@ Detections detect(FramesAhead& frames, const LocatorOptions& locator, const Cell
                            .sigma_x_px = b.sigma_x,
                            .sigma_y_px = b.sigma_y});
         }
+        for (const Detection& d : paler_discs(found.beads, found.dropped))
+          if (const double x = d.x + region.corner().x, y = d.y + region.corner().y;
+              !region.cuts(x, y, d.radius) && in_cell({x, y}))
+            ++all.paler;
         inside += beads.size();
         all.frames.append(beads);
       },
@@ -119,6 +124,19 @@ std::string TrackedStack::scale_doubt(const CellDescription& cell) const {
   if (sizes.empty()) return {};
   return fmt::format("sigma is {:g} px (camera.pixels_per_sigma), but the beads are {} px wide: {:.3g} sigma",
                      *cell.pixels_per_sigma, sizes, smallest_diameter(locator) / *cell.pixels_per_sigma);
+}
+
+std::string TrackedStack::paler_doubt() const {
+  constexpr double kMany = 0.02;  // of the beads
+  std::size_t beads = 0;
+  for (std::size_t f = 0; f < frames.size(); ++f) beads += frames.count(f);
+  const auto left_out = static_cast<double>(paler);
+  if (left_out <= kMany * static_cast<double>(beads)) return {};
+  return fmt::format(
+      "{:.2g} paler discs in a frame were left out: if they are beads, such as tracers, N_l, the results and "
+      "a "
+      "twin lack them (twincell locate --candidates lists them)",
+      left_out / static_cast<double>(frames.size()));
 }
 
 TrackedStack track_stack(FrameSource& stack, const LocatorOptions& given, LinkOptions link,
@@ -148,7 +166,8 @@ TrackedStack track_stack(FrameSource& stack, const LocatorOptions& given, LinkOp
   linking.count(static_cast<double>(linked.links.links));
   return {std::move(linked),      locator,
           witnessed.size().width, witnessed.size().height,
-          detected.outside_cell,  detected.wrong_radius};
+          detected.outside_cell,  detected.wrong_radius,
+          detected.paler};
 }
 
 }  // namespace twincell::imaging

@@ -23,12 +23,16 @@ struct TrackedStack : LinkedDetections {
   int width_px = 0, height_px = 0;
   std::size_t outside_cell = 0;  ///< detections excluded because they are outside the cell
   std::size_t wrong_radius = 0;  ///< candidates excluded as discs of another size
-  FrameRange range = {};         ///< numbers of the frames, which become the steps of the trajectory
+  std::size_t paler = 0;  ///< candidates in the cell excluded as discs of another darkness (paler_discs.hpp)
+  FrameRange range = {};  ///< numbers of the frames, which become the steps of the trajectory
   std::string spacing_doubt =
       {};                  ///< of a table: beads are too close for their size, or twice there, a sentence
   bool has_errors = true;  ///< the standard errors of the positions are known
   /// Says that no bead is about one sigma wide (10 %); empty if one is, or the scale is unknown.
   [[nodiscard]] std::string scale_doubt(const CellDescription& cell) const;
+  /// A sentence, without a full stop, if more paler discs than a fiftieth of the beads were left out, as
+  /// tracers of another darkness may be. Empty otherwise.
+  [[nodiscard]] std::string paler_doubt() const;
 };
 
 /// Locates the beads, determines the phases and links. The stack is read once.

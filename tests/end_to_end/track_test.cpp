@@ -122,6 +122,21 @@ TEST(Track, BeadsOfSeveralSizes) {
   EXPECT_LE(said["wrong_radius"], 10);
 }
 
+// The common profile, at the diameter of the rims, leaves out the ten tracers of the sixty beads.
+TEST(Track, TracersThatAreLeftOutAreNoted) {
+  const TemporaryFolder folder;
+  const std::string six = TWINCELL_SOURCE_DIR "/data_samples/demo/six-layers/gamma-0.9";
+  std::vector<std::string> words = {"track", six + ".tif", "--cell", six + ".toml", "-o", folder / "exp.h5"};
+  const Ran plain = run_program(words);
+  ASSERT_EQ(plain.code, 0) << plain.err;
+  EXPECT_NE(plain.out.find("60 tracks"), std::string::npos) << plain.out;
+  EXPECT_EQ(plain.err.find("paler discs"), std::string::npos) << plain.err;
+  for (const char* word : {"--diameter", "12", "--refine", "profile", "--force"}) words.emplace_back(word);
+  const Ran profile = run_program(words);
+  ASSERT_EQ(profile.code, 0) << profile.err;
+  EXPECT_NE(profile.err.find("paler discs in a frame were left out"), std::string::npos) << profile.err;
+}
+
 // The first two cycles of a shipped film, whose plate is at row 186.2.
 class DemoFilm : public ::testing::Test {
  protected:

@@ -57,6 +57,25 @@ TEST(RimVariation, LeavesOutWhatAllDiscsHaveInCommon) {
   EXPECT_LT(alike, 0.3 * apart);
 }
 
+// Beads in contact with an opaque wall are as round as others. In a bed that fills its cell most of the rims
+// that are seen are at walls.
+TEST(RimVariation, LeavesOutWalls) {
+  cv::Mat1f grey = objects(circle, 1);
+  constexpr int kWall = kPitch / 2 - static_cast<int>(kRadius), kBlurred = 3;
+  grey(cv::Rect(0, 0, kWall, kSide)).setTo(kDark);
+  cv::Mat1b walls(grey.size(), uchar{0});
+  walls(cv::Rect(0, 0, kWall + kBlurred, kSide)).setTo(255);
+  std::vector<Detection> beside;
+  for (const Detection& d : discs(kRadius))
+    if (d.x < kPitch) beside.push_back(d);
+  EXPECT_GT(rim_variation(grey, beside, {kRadius}), 2 * kMostRimVariation);
+  EXPECT_LT(rim_variation(grey, beside, {kRadius}, {}, walls), 0.01);
+  // Polygons at a wall are still no discs.
+  grey = objects(polygon(4, 0.85 * kRadius), 1);
+  grey(cv::Rect(0, 0, kWall, kSide)).setTo(kDark);
+  EXPECT_GT(rim_variation(grey, beside, {kRadius}, {}, walls), kMostRimVariation);
+}
+
 TEST(RimVariation, OfRimsThatAreNotSeenIsNone) {
   EXPECT_EQ(variation(objects(circle, 1), {}), 0);
   std::vector<Detection> hidden = discs(kRadius);
