@@ -39,7 +39,8 @@ void write_phases(const std::string& path, const calibration::DriveFit& lock) {
     // read_triggers requires cycles that are counted from 0.
     const double first = std::floor(lock.frames.front().cycles);
     for (std::size_t f = 0; f < lock.frames.size(); ++f)
-      out << fmt::format("{},{:.6f}\n", f, lock.frames[f].cycles - first);
+      out << (lock.has_phase(f) ? fmt::format("{},{:.6f}\n", f, lock.frames[f].cycles - first)
+                                : fmt::format("{},\n", f));
     if (!out.flush()) throw RunError(path + ": writing the table failed.");
   }
   file.commit();
@@ -55,12 +56,13 @@ std::string list_of(const calibration::DriveFit& lock, calibration::FrameLock ki
 }
 
 calibration::DriveFit lock_of(const PlateOptions& o, const imaging::CellDescription& cell,
-                              const calibration::CellGeometry& g) {
+                              const calibration::CellGeometry& g, const calibration::StackEdges& edges) {
   try {
     const int known = o.frames_per_cycle > 0 ? o.frames_per_cycle : cell.phase_lock.frames_per_cycle;
-    return calibration::fit_drive(
-        g.heights_px(),
-        {.frames_per_cycle = known, .mend = true, .model_error = calibration::kHeightModelError_px});
+    return calibration::fit_drive(g.heights_px(), {.frames_per_cycle = known,
+                                                   .mend = true,
+                                                   .model_error = calibration::kHeightModelError_px,
+                                                   .repeats = edges.repeats});
   } catch (const InputError& e) {
     throw InputError({.file = o.flags.stack, .key = {}}, e.what());
   }
@@ -171,6 +173,8 @@ void describe_frames(nlohmann::json& d, const MeasuredPlate& m) {
                               {"error_px", finite(m.geometry.heights[f].sigma_px)},
                               {"residual_px", finite(lock.frames[f].residual)},
                               {"lock", kLocks[static_cast<std::size_t>(lock.frames[f].lock)]}});
+  for (const imaging::FrameStretch& s : lock.out_of_lock_stretches)
+    d["frames"]["without_phase"].push_back({s.first, s.last});
 }
 
 /// The same as text.
@@ -233,7 +237,7 @@ void run(const PlateOptions& o, const Common& common) {
       o.accelerometer.empty() ? std::nullopt : std::optional(calibration::read_vibration(o.accelerometer));
   calibration::StackEdges edges;
   const calibration::CellGeometry g = geometry_of(o.flags, cell, common, edges);
-  MeasuredPlate m{o, cell, g, lock_of(o, cell, g), scale_of(cell, g), {}, data_hash(o.flags.stack)};
+  MeasuredPlate m{o, cell, g, lock_of(o, cell, g, edges), scale_of(cell, g), {}, data_hash(o.flags.stack)};
   calibration::DriveFit& lock = m.lock;
   lock.amplitude_error = std::hypot(lock.amplitude_error, lock.amplitude * g.stretch_error);
 

@@ -51,12 +51,19 @@ std::string phases_in_words(const imaging::PhaseTable& p) {
                           p.method == imaging::PhaseMethod::found ? "at most " : "", *p.jitter);
     if (!p.frames.empty())
       text += fmt::format(", {} dropped, {} taken twice", counted(p.dropped, "frame"), p.doubled);
+    if (p.between > 0) text += fmt::format(", {} between two phases", counted(p.between, "frame"));
+    if (!p.out_of_lock.empty())
+      text += fmt::format(", {} out of lock", counted(frames_in(p.out_of_lock), "frame"));
     // No triggered camera is known to miss so many frames. A camera that runs free of the drive slips
-    // continually.
-    constexpr double kMostSlips = 0.1;
+    // continually; one whose frames are only repeated, with clear phases between them, does not.
+    constexpr double kMostSlips = 0.1, kClear = 0.15;
     if (p.method == imaging::PhaseMethod::found &&
         static_cast<double>(p.dropped + p.doubled) > kMostSlips * static_cast<double>(p.frames.size()))
-      text += " (so many that the camera seems to run free of the drive; the phases are then meaningless)";
+      text +=
+          p.dropped == 0 && p.jitter.value_or(0) < kClear
+              ? " (so many repeated frames come from a conversion of the frame rate, or from a bed at rest; "
+                "each instant counts once)"
+              : " (so many that the camera seems to run free of the drive; the phases are then meaningless)";
     if (p.agreement)
       text += fmt::format("; phase 0 placed by the drive, correlation {:.3f}", *p.agreement);
     else if (p.method == imaging::PhaseMethod::found && p.checked_by.empty())
@@ -71,6 +78,8 @@ nlohmann::json json_of(const imaging::PhaseTable& p) {
   if (p.locked()) lock["frames_per_cycle"] = p.frames_per_cycle;
   lock["dropped"] = p.dropped;
   lock["doubled"] = p.doubled;
+  if (!p.out_of_lock.empty()) lock["out_of_lock"] = frames_in(p.out_of_lock);
+  if (p.between > 0) lock["between_phases"] = p.between;
   if (!p.checked_by.empty()) lock["checked_by"] = p.checked_by;
   if (!p.not_checked.empty()) lock["not_checked"] = p.not_checked;
   if (!p.warning.empty()) lock["warning"] = p.warning;

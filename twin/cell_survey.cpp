@@ -110,7 +110,7 @@ bool beads_below_plate(const CellSurvey& s) {
 }
 
 /// The fitted motion, if the lowest edge moves as a plate does.
-void survey_plate(CellSurvey& s, const SurveyOptions& options) {
+void survey_plate(CellSurvey& s, const SurveyOptions& options, const std::vector<std::uint8_t>& repeats) {
   constexpr double kSeen = 0.9;
   const auto heights = s.geometry->heights_px();
   const auto seen = std::count_if(heights.begin(), heights.end(), [](double h) { return std::isfinite(h); });
@@ -131,8 +131,10 @@ void survey_plate(CellSurvey& s, const SurveyOptions& options) {
   if (beads_below_plate(s)) return unseen("beads are seen below the lowest edge, so this edge is no plate");
   s.plate_row = calibration::Estimate{s.geometry->plate_row, s.geometry->plate_row_error};
   try {
-    s.drive = calibration::fit_drive(
-        heights, {.frames_per_cycle = 0, .mend = true, .model_error = calibration::kHeightModelError_px});
+    s.drive = calibration::fit_drive(heights, {.frames_per_cycle = 0,
+                                               .mend = true,
+                                               .model_error = calibration::kHeightModelError_px,
+                                               .repeats = repeats});
   } catch (const InputError& e) {
     std::string why = e.what();
     while (why.ends_with('.')) why.pop_back();
@@ -177,7 +179,7 @@ void survey_edges(CellSurvey& s, const SurveyOptions& options, const ProgressOf&
                                        : "state --drive-gamma, so that the motion of the bed shows it"});
     return;
   }
-  survey_plate(s, options);
+  survey_plate(s, options, edges.repeats);
   if (!s.has_walls())
     s.missing.push_back(
         {s.geometry->has_left    ? "the right wall"

@@ -16,6 +16,7 @@
 #include "core/median.hpp"
 #include "imaging/settings/auto_configuration.hpp"
 #include "imaging/stack/open_frames.hpp"
+#include "imaging/stack/repeated_frames.hpp"
 
 namespace twincell::calibration {
 namespace {
@@ -364,10 +365,12 @@ StackEdges read_stack_edges(imaging::FrameSource& frames, bool bright, double di
   std::vector<double> blurs;
   bool stamped = true;
   std::size_t done = 0;
+  imaging::RepeatedFrames repeated;
   for (bool more = true; more;) {
     std::vector<cv::Mat> batch;
     for (cv::Mat frame; batch.size() < batch_size && (more = frames.next(frame)); frame = cv::Mat()) {
       batch.push_back(frame);
+      repeated.add(frame);
       if (const auto t = frames.time_s(); t && stamped)
         out.time_s.push_back(*t);
       else
@@ -388,6 +391,7 @@ StackEdges read_stack_edges(imaging::FrameSource& frames, bool bright, double di
     progress.update(static_cast<std::int64_t>(done), static_cast<std::int64_t>(frames.announced()));
   }
   if (done == 0) throw InputError(Where{.file = frames.current(), .key = {}}, "holds no frame.");
+  out.repeats = repeated.repeats();
   if (!stamped) out.time_s.clear();
   if (!blurs.empty()) out.blur_px = upper_median(blurs);
   return out;

@@ -37,9 +37,10 @@ struct StackEdges {
   std::vector<std::vector<imaging::EdgePoint>> plate;        ///< [frames]
   std::vector<std::vector<imaging::EdgePoint>> left, right;  ///< [frames 0, stride, 2 stride ...]
   std::size_t stride = 1;
-  std::vector<double> time_s;  ///< camera time stamp of each frame; empty if the stack has none
-  double blur_px = 0;          ///< median over frames
-  double diameter_px = 15;     ///< bead diameter: the correlation length of errors along an edge
+  std::vector<std::uint8_t> repeats;  ///< [frames] as imaging::RepeatedFrames::repeats
+  std::vector<double> time_s;         ///< camera time stamp of each frame; empty if the stack has none
+  double blur_px = 0;                 ///< median over frames
+  double diameter_px = 15;            ///< bead diameter: the correlation length of errors along an edge
 };
 /// Bead diameter for the edge detection, px: the known one, else an estimate from the first frame, else 15
 /// px.

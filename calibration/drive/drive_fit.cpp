@@ -17,6 +17,7 @@
 #include "core/error.hpp"
 #include "core/median.hpp"
 #include "imaging/phase/sine_slips.hpp"
+#include "imaging/stack/repeated_frames.hpp"
 
 namespace twincell::calibration {
 namespace {
@@ -426,8 +427,29 @@ void add_parameters(DriveFit& lock, const Timed& timed, double model_error, doub
                                t0 * t0 * report.covariance(3, 3) + 2 * t0 * report.covariance(2, 3));
 }
 
-void require_motion(const DriveFit& lock, const Attempt& a) {
-  if (lock.amplitude > 5 * lock.amplitude_error && a.scatter.at(0) < lock.amplitude) return;
+/// \param stated frames per cycle at which the fit began; 0: none
+void require_motion(const DriveFit& lock, const Attempt& a, const std::vector<double>& heights, int stated) {
+  const auto moves = [](double amplitude, double error, double scatter) {
+    return amplitude > 5 * error && scatter < amplitude;
+  };
+  if (moves(lock.amplitude, lock.amplitude_error, a.scatter.at(0))) return;
+  // A plate that moves with another period is off a sine of the stated one.
+  if (stated > 0) {
+    const Attempt free = first_attempt(heights, 0).attempt;
+    const FitReport& report = free.fitted.report;
+    const double period = 2 * kPi / report.values[3];
+    if (report.standard_errors.size() > 0 &&
+        moves(report.values[1], report.standard_error("A"), free.scatter.at(0)))
+      throw InputError(
+          {.file = {}, .key = "plate"},
+          fmt::format(
+              "moves by {:.3g} about its mean height with a period of {:.4g} frames, but {} frames per "
+              "cycle are stated; correct camera.frames_per_cycle or --frames-per-cycle{}.",
+              report.values[1], period, stated,
+              std::abs(period - std::round(period)) * static_cast<double>(heights.size()) > 0.5 * period
+                  ? ", or state none, as this period is no whole number"
+                  : ""));
+  }
   throw InputError(
       {.file = {}, .key = "plate"},
       fmt::format("does not move by more than the scatter of its heights: amplitude {:.3g}, error {:.2g}, "
@@ -461,6 +483,30 @@ void add_second_harmonic(DriveFit& lock, const Attempt& a, int harmonics, double
                     *lock.second_harmonic, *lock.second_harmonic_error, *lock.p_sinusoidal));
 }
 
+/// Finds the stretches out of lock, and says how many frames do not follow the fit.
+void add_stretches(DriveFit& lock) {
+  constexpr double kMany = 0.03;  // of the frames
+  std::vector<double> misses;
+  for (const LockedFrame& frame : lock.frames)
+    misses.push_back(frame.lock == FrameLock::unseen ? kNaN : frame.lock == FrameLock::locked ? 0 : 2);
+  lock.out_of_lock_stretches = imaging::stretches_out_of_lock(misses, 2 * kPi / lock.omega);
+  const std::size_t n = lock.frames.size(), without = imaging::frames_in(lock.out_of_lock_stretches);
+  std::size_t single = 0;
+  for (std::size_t f = 0; f < n; ++f)
+    single += lock.frames[f].lock == FrameLock::out_of_lock && lock.has_phase(f) ? 1 : 0;
+  if (without > 0)
+    lock.notes.push_back(
+        fmt::format("the plate does not follow the drive in {} of {} frames ({}), as before the shaker "
+                    "starts or after it "
+                    "stops: they have no phase, and track leaves them out",
+                    without, n, imaging::in_words(lock.out_of_lock_stretches)));
+  if (static_cast<double>(single) > kMany * static_cast<double>(n))
+    lock.notes.push_back(fmt::format(
+        "the plate is off the fit in {} {} of {} frames: its edge is misread there, or the drive is not "
+        "steady",
+        single, without > 0 ? "further" : "single", n));
+}
+
 /// Phase and lock of every frame, and the rms residual of those that are locked.
 void add_frames(DriveFit& lock, const Timed& timed, double model_error) {
   const Attempt& a = timed.attempt;
@@ -487,7 +533,15 @@ void add_frames(DriveFit& lock, const Timed& timed, double model_error) {
 
 }  // namespace
 
-DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& options) {
+bool DriveFit::has_phase(std::size_t frame) const {
+  return std::none_of(out_of_lock_stretches.begin(), out_of_lock_stretches.end(),
+                      [&](const auto& s) { return s.first <= frame && frame <= s.last; });
+}
+
+namespace {
+
+/// fit_drive() without the frames that are repeated, and without the stretches out of lock.
+DriveFit fit_each(const std::vector<double>& heights, const DriveFitOptions& options) {
   constexpr double kFollowed = 0.97;    // least share of frames that follow a fit without missing frames
   constexpr std::size_t kShortRun = 3;  // longest run of frames that do not
   DriveFit lock;
@@ -508,7 +562,7 @@ DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& op
   lock.cyclic_factor = cyclic_factor(a, harmonics);
   const double angle = options.model_error / lock.amplitude;
   add_parameters(lock, timed, options.model_error, angle);
-  require_motion(lock, a);
+  require_motion(lock, a, heights, options.frames_per_cycle);
   add_second_harmonic(lock, a, harmonics, angle);
   add_frames(lock, timed, options.model_error);
   add_phases(lock, static_cast<std::size_t>(std::lround(timed.ticks.back() - timed.ticks.front())) + 1);
@@ -518,6 +572,35 @@ DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& op
         std::hypot(angle, std::sqrt(lock.cyclic_factor) * report.standard_error("phi")) *
         lock.frames_per_cycle / (2 * kPi);
   add_jitter(lock, a);
+  return lock;
+}
+
+/// Gives repeated frames the phases of the frames before them.
+void add_repeats(DriveFit& lock, const std::vector<std::uint8_t>& repeats) {
+  std::vector<LockedFrame> each = std::move(lock.frames);
+  lock.frames.clear();
+  for (std::size_t f = 0, next = 0; f < repeats.size(); ++f) {
+    lock.frames.push_back(repeats[f] != 0 ? lock.frames.back() : each[next++]);
+    lock.doubled += repeats[f];
+  }
+  lock.notes.insert(lock.notes.begin(),
+                    imaging::repeats_in_words(repeats) + "; here each instant counts once");
+}
+
+}  // namespace
+
+DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& options) {
+  if (options.repeats.size() != heights.size()) {
+    DriveFit lock = fit_each(heights, options);
+    add_stretches(lock);
+    return lock;
+  }
+  std::vector<double> each;
+  for (std::size_t f = 0; f < heights.size(); ++f)
+    if (options.repeats[f] == 0) each.push_back(heights[f]);
+  DriveFit lock = fit_each(each, options);
+  add_repeats(lock, options.repeats);
+  add_stretches(lock);
   return lock;
 }
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "calibration/fit/fit.hpp"
+#include "imaging/phase/out_of_lock.hpp"
 
 namespace twincell::calibration {
 
@@ -40,6 +41,9 @@ struct DriveFitOptions {
   /// Systematic error of the heights that recurs every cycle, also at the drive frequency. It enters the
   /// errors of z0, A, omega, the phase and the second harmonic.
   double model_error = 0;
+  /// [frames] as imaging::RepeatedFrames::repeats; empty: none. The fit leaves repeated frames out; they
+  /// count as doubled and take the phases of the frames before them, and a note names them.
+  std::vector<std::uint8_t> repeats = {};
 };
 
 /// Result of fit_drive. Lengths are in the unit of the heights.
@@ -67,7 +71,13 @@ struct DriveFit {
   double jitter_error = 0, jitter_limit = 0;  ///< standard error; 95 % upper limit
   std::int64_t locked = 0, out_of_lock = 0, unseen = 0, dropped = 0, doubled = 0;
   std::vector<LockedFrame> frames;
+  /// Where the plate does not follow the fit: before the shaker starts, after it stops, in a pause
+  std::vector<imaging::FrameStretch> out_of_lock_stretches;
   std::vector<std::string> notes;
+
+  /// Whether a frame has a phase: it is in no stretch out of lock. A single height that is misread does not
+  /// take the phase of its frame away.
+  [[nodiscard]] bool has_phase(std::size_t frame) const;
 };
 
 /// Fits the drive to the plate's heights. \param heights one per frame, NaN where the plate was not detected

@@ -42,7 +42,8 @@ std::pair<CellGeometry, DriveFit> plate_in_picture(const imaging::CellDescriptio
   const DriveFit drive =
       fit_drive(geometry.heights_px(), {.frames_per_cycle = cell.phase_lock.frames_per_cycle,
                                         .mend = true,
-                                        .model_error = kHeightModelError_px});
+                                        .model_error = kHeightModelError_px,
+                                        .repeats = edges.repeats});
   if (cell.origin && cell.pixels_per_sigma) {
     constexpr double kFarthest = 0.5;
     const double row = geometry.plate_row - drive.z0;

@@ -25,8 +25,11 @@ constexpr const char* kCure =
 }
 
 /// Accepts ticks in which frames are missing or doubled, unless they are too many. \param witness "the plate"
-void accept(PhaseTable& table, std::span<const std::int64_t> ticks, const std::string& witness) {
+/// \param out_of_lock frames whose ticks count for nothing
+void accept(PhaseTable& table, std::span<const std::int64_t> ticks, std::span<const FrameStretch> out_of_lock,
+            const std::string& witness) {
   set_phases(table, ticks);
+  leave_out(table, out_of_lock);
   const auto slips = static_cast<std::size_t>(std::count_if(
       table.frames.begin(), table.frames.end(), [](const FramePhase& f) { return f.interval != 1; }));
   const auto first = std::find_if(table.frames.begin(), table.frames.end(),
@@ -36,6 +39,7 @@ void accept(PhaseTable& table, std::span<const std::int64_t> ticks, const std::s
     refuse(table, fmt::format("by {} {} of {} frames do not follow the frame before them, the first at frame "
                               "{}",
                               witness, slips, ticks.size(), first));
+  if (slips == 0) return;
   table.warning = fmt::format(
       "by {}, not every frame follows the frame before it: {}; the phases of all later "
       "frames are corrected (--trust-stated-drive keeps the stated lock)",
@@ -67,7 +71,23 @@ bool by_plate(PhaseTable& table, const PhaseLock& lock, std::span<const double> 
   }
   const SineSlips& fit = *reading.slips;
   table.checked_by = "the plate";
-  if (fit.dropped + fit.doubled > 0) accept(table, fit.ticks, "the plate in the frames");
+  if (fit.dropped + fit.doubled > 0) accept(table, fit.ticks, reading.out_of_lock, "the plate in the frames");
+  const auto add_warning = [&](const std::string& said) {
+    table.warning += (table.warning.empty() ? "" : "; ") + said;
+  };
+  if (!reading.out_of_lock.empty()) {
+    if (table.frames.empty()) {
+      set_phases(table, fit.ticks);
+      leave_out(table, reading.out_of_lock);
+    }
+    add_warning(out_of_lock_in_words(table));
+  }
+  constexpr double kManyMisread = 0.03;  // of the frames
+  if (static_cast<double>(reading.misread) > kManyMisread * static_cast<double>(plate.size()))
+    add_warning(
+        fmt::format("the plate is off its sine in {} of {} frames{}: its edge is misread there, or the "
+                    "drive is not steady (calibrate plate names these frames)",
+                    reading.misread, plate.size(), reading.out_of_lock.empty() ? "" : " that are kept"));
   // Phase of the first frame.
   const double cycle = table.frames_per_cycle;
   const double off = std::remainder(fit.phase * cycle - table.first_phase - lock.offset, cycle);
@@ -83,10 +103,10 @@ bool by_plate(PhaseTable& table, const PhaseLock& lock, std::span<const double> 
                       "correct it (camera.first_phase, --first-phase), or keep it with "
                       "--trust-stated-drive.",
                       table.first_phase, shown, table.frames_per_cycle));
-    table.warning += fmt::format(
-        "{}the plate shows the first frame at phase {} of {}, but the stated first phase is {} "
-        "(--first-phase)",
-        table.warning.empty() ? "" : "; ", shown, table.frames_per_cycle, table.first_phase);
+    add_warning(
+        fmt::format("the plate shows the first frame at phase {} of {}, but the stated first phase is {} "
+                    "(--first-phase)",
+                    shown, table.frames_per_cycle, table.first_phase));
   }
   return true;
 }
@@ -112,7 +132,7 @@ bool by_times(PhaseTable& table, std::span<const double> times, std::string& why
     ticks.push_back(ticks.back() + std::llround(by));
   }
   table.checked_by = "the time stamps";
-  if (slips) accept(table, ticks, "the time stamps of the camera");
+  if (slips) accept(table, ticks, {}, "the time stamps of the camera");
   return true;
 }
 
@@ -175,7 +195,7 @@ void check_lock_by_bed(PhaseTable& table, const BedMotion& motion) {
   std::vector<std::int64_t> ticks = {0};
   for (std::size_t f = 1; f < found.frames.size(); ++f)
     ticks.push_back(ticks.back() + std::llround(found.frames[f].interval));
-  accept(table, ticks, "the motion of the bed");
+  accept(table, ticks, {}, "the motion of the bed");
 }
 
 }  // namespace twincell::imaging

@@ -20,6 +20,9 @@ namespace twincell::imaging {
 struct LockEvidence {
   std::vector<double> plate_px;  ///< [frames] height of the plate, NaN where not seen (plate_row.hpp)
   std::vector<double> times_s;   ///< [frames] time stamps of the camera
+  /// [frames] as RepeatedFrames::repeats, empty if no frame is repeated. The checks here take evidence
+  /// without repeated frames (repeated_instants.hpp).
+  std::vector<std::uint8_t> repeats;
 };
 
 /// The phases of a lock, checked against plate and time stamps. PhaseTable::checked_by states the witness;

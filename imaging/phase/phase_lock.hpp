@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,6 +17,7 @@
 
 #include "core/choice.hpp"
 #include "core/error.hpp"
+#include "imaging/phase/out_of_lock.hpp"
 
 namespace twincell::imaging {
 
@@ -48,10 +50,12 @@ struct PhaseLock {
 
 /// Phase and cycle at which one frame was taken.
 struct FramePhase {
-  std::int32_t phase = -1;  ///< k in 0 .. N_k - 1; -1: not locked
-  std::int64_t cycle = -1;  ///< j
+  std::int32_t phase = -1;  ///< k in 0 .. N_k - 1; -1: not locked, or between two phases
+  std::int64_t cycle = -1;  ///< j; -1: not locked
   double interval = 1;      ///< frame intervals since the previous frame: 0 if it shows the same instant
                             ///< again, 1 + n if n frames were dropped in between
+  /// Cycles of the drive since phase 0 of cycle 0; NaN: j + (k + PhaseTable::offset)/N_k
+  double cycles = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Source of the phases of a stack.
@@ -75,7 +79,7 @@ inline constexpr std::array kPhaseMethods = {
 struct PhaseTable {
   PhaseMethod method = PhaseMethod::none;
   int frames_per_cycle = 0;             ///< N_k; 0: not locked
-  int first_phase = 0;                  ///< of frame 0
+  int first_phase = 0;                  ///< of frame 0, or of the first frame that is not out of lock
   std::optional<double> period_frames;  ///< the period as measured, frames
   std::optional<double> jitter;     ///< rms distance of the frames from their phases, frame intervals; for an
                                     ///< estimated phase an upper bound, since the bed varies too
@@ -86,12 +90,20 @@ struct PhaseTable {
   std::int64_t doubled = 0;         ///< frames that repeat the previous instant
   std::vector<FramePhase> frames;   ///< empty: frame f follows PhaseLock{frames_per_cycle, first_phase}
   double offset = 0;                ///< frame intervals by which every frame was taken later than its phase
-  std::string checked_by;           ///< "the plate", "the time stamps" or "the bed"; empty: unchecked
-  std::string not_checked;          ///< why a fixed lock could not be checked
-  std::string warning;              ///< how a fixed lock contradicts the stack; empty: it does not
+  /// Frames without a phase, in which the plate does not follow the drive
+  std::vector<FrameStretch> out_of_lock;
+  std::int64_t between = 0;  ///< frames between two phases, of a period that is no whole number of frames
+  std::string checked_by;    ///< "the plate", "the time stamps" or "the bed"; empty: unchecked
+  std::string not_checked;   ///< why a fixed lock could not be checked
+  std::string warning;       ///< how a fixed lock contradicts the stack; empty: it does not
 
   [[nodiscard]] bool locked() const { return frames_per_cycle > 0; }
   [[nodiscard]] FramePhase at(std::int64_t frame) const;
+  /// Cycles of the drive at which the frame was taken, since phase 0 of cycle 0. Absent if the frame is out
+  /// of lock or nothing is locked.
+  [[nodiscard]] std::optional<double> cycles_at(std::int64_t frame) const;
+  /// Whether the frame belongs to a trajectory: it repeats no instant and is not out of lock.
+  [[nodiscard]] bool is_used(std::int64_t frame) const;
 };
 
 /// The phases of a PhaseLock. Nothing is measured, so jitter and period are absent and no frame counts as
@@ -101,5 +113,13 @@ PhaseTable fixed_phases(const PhaseLock& lock);
 /// Sets phases, cycles and counts of missing and doubled frames. \param ticks [frames] frame intervals since
 /// frame 0 \pre table.frames_per_cycle and table.first_phase are set
 void set_phases(PhaseTable& table, std::span<const std::int64_t> ticks);
+
+/// Takes the phases of these frames away. Missing and doubled frames in them, and at their ends, are no
+/// longer counted. \pre table.frames has an entry for each frame
+void leave_out(PhaseTable& table, std::span<const FrameStretch> stretches);
+
+/// "the plate does not follow the drive in 40 of 440 frames (0 to 39); they have no phase and are left out
+/// of the trajectory"
+std::string out_of_lock_in_words(const PhaseTable& table);
 
 }  // namespace twincell::imaging

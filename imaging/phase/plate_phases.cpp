@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "core/constants.hpp"
 #include "core/counted.hpp"
+#include "imaging/phase/phases_of_times.hpp"
 
 namespace twincell::imaging {
 
@@ -53,6 +55,17 @@ std::string change_of(std::span<const double> plate, int frames_per_cycle) {
                      begin->amplitude, part, end->amplitude, part);
 }
 
+/// Distance of the plate from its sine over the largest that its errors allow. \param sine height by frame
+template <class SineOfFrame>
+std::vector<double> misses_of(std::span<const double> plate, double amplitude, double scatter,
+                              const SineOfFrame& sine) {
+  constexpr double kErrors = 5, kShare = 0.1, kLeast_px = 1;
+  const double most = std::max({kErrors * scatter, kShare * amplitude, kLeast_px});
+  std::vector<double> misses;
+  for (std::size_t f = 0; f < plate.size(); ++f) misses.push_back(std::abs(plate[f] - sine(f)) / most);
+  return misses;
+}
+
 /// read_plate() with the sine of any period. \param free_sine gives it; called where it is needed
 template <class FreeSineSource>
 PlateReading read(std::span<const double> plate, int frames_per_cycle, const FreeSineSource& free_sine) {
@@ -82,13 +95,43 @@ PlateReading read(std::span<const double> plate, int frames_per_cycle, const Fre
         out.other = free;
     }
   }
-  if (fits)
+  if (fits) {
+    const std::vector<double> misses = misses_of(plate, fit->amplitude, fit->scatter,
+                                                 [&](std::size_t f) { return fit->at(f, frames_per_cycle); });
+    out.out_of_lock = stretches_out_of_lock(misses, frames_per_cycle);
+    out.misread = static_cast<std::size_t>(
+        std::count_if(misses.begin(), misses.end(), [](double miss) { return miss > 1; }));
+    for (const FrameStretch& s : out.out_of_lock)
+      for (std::size_t f = s.first; f <= s.last; ++f) out.misread -= misses[f] > 1 ? 1 : 0;
     out.slips = std::move(fit);
-  else if (const std::string changes = change_of(plate, frames_per_cycle); !changes.empty())
+  } else if (const std::string changes = change_of(plate, frames_per_cycle); !changes.empty())
     out.changes = changes;
   else
     out.why_not = "no edge at the bottom of the picture moves as a plate";
   return out;
+}
+
+/// Phases of a plate whose period is no whole number of frames; nothing if it does not move as a sine.
+std::optional<PhaseTable> phases_of_uneven(std::span<const double> plate, const std::optional<FreeSine>& sine,
+                                           int stated) {
+  constexpr double kFewestPerCycle = 3;
+  if (!sine || !moves(sine->amplitude, sine->scatter) || sine->period < kFewestPerCycle) return std::nullopt;
+  std::vector<double> cycles;
+  for (std::size_t f = 0; f < plate.size(); ++f)
+    cycles.push_back(static_cast<double>(f) / sine->period + sine->phase);
+  const std::vector<FrameStretch> out_of_lock = stretches_out_of_lock(
+      misses_of(plate, sine->amplitude, sine->scatter, [&](std::size_t f) { return sine->at(f); }),
+      sine->period);
+  for (const FrameStretch& s : out_of_lock)
+    for (std::size_t f = s.first; f <= s.last; ++f) cycles[f] = kNaN;
+  PhaseTable table{.method = PhaseMethod::found};
+  if (frames_in(out_of_lock) == plate.size() || !set_phases_of_times(table, cycles, stated))
+    return std::nullopt;
+  table.jitter.reset();  // that of the sine's own times
+  table.checked_by = "the plate";
+  if (!table.out_of_lock.empty())
+    table.warning += (table.warning.empty() ? "" : "; ") + out_of_lock_in_words(table);
+  return table;
 }
 
 }  // namespace
@@ -100,21 +143,27 @@ PlateReading read_plate(std::span<const double> plate, int frames_per_cycle) {
 std::optional<PhaseTable> phases_from_plate(std::span<const double> plate, int stated, double offset) {
   const std::optional<FreeSine> free = stated == 0 ? fit_free_sine(plate) : std::nullopt;
   if (stated == 0 && !free) return std::nullopt;
-  std::optional<SineSlips> best;
+  std::optional<PlateReading> best;
+  std::optional<FreeSine> uneven = free;
   int best_n = 0;
   for (const int n : frames_per_cycle_to_try(stated, free ? free->period : 0)) {
     PlateReading reading =
         free ? read(plate, n, [&] { return free; }) : read_plate(plate, n);  // one search for all n
-    if (!reading.fits() || (best && cost(*reading.slips) >= cost(*best))) continue;
-    best = std::move(reading.slips);
+    if (stated != 0 && reading.other && std::abs(reading.other->period - stated) < 1) uneven = reading.other;
+    if (!reading.fits() || (best && cost(*reading.slips) >= cost(*best->slips))) continue;
+    best = std::move(reading);
     best_n = n;
   }
-  if (!best) return std::nullopt;
+  if (!best) return phases_of_uneven(plate, uneven, stated);
   PhaseTable table{.method = PhaseMethod::found, .frames_per_cycle = best_n};
   table.offset = offset;
-  table.first_phase = static_cast<int>((std::lround(best->phase * best_n - offset) + best_n) % best_n);
+  table.first_phase = static_cast<int>((std::lround(best->slips->phase * best_n - offset) + best_n) % best_n);
   table.checked_by = "the plate";
-  set_phases(table, best->ticks);
+  set_phases(table, best->slips->ticks);
+  if (!best->out_of_lock.empty()) {
+    leave_out(table, best->out_of_lock);
+    table.warning = out_of_lock_in_words(table);
+  }
   return table;
 }
 

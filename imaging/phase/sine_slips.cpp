@@ -121,7 +121,20 @@ Ticks likeliest_ticks(std::span<const double> z, const Sine& sine, double scatte
   return ticks;
 }
 
+double turns_of(const Sine& sine) {
+  const double turns = std::atan2(sine.c[2], sine.c[1]) / kTurn;
+  return turns - std::floor(turns);
+}
+
 }  // namespace
+
+double SineSlips::at(std::size_t frame, int frames_per_cycle) const {
+  return mean + amplitude * std::sin(kTurn * (static_cast<double>(ticks[frame]) / frames_per_cycle + phase));
+}
+
+double FreeSine::at(std::size_t frame) const {
+  return mean + amplitude * std::sin(kTurn * (static_cast<double>(frame) / period + phase));
+}
 
 std::optional<SineSlips> fit_sine_with_slips(std::span<const double> z, int frames_per_cycle) {
   const auto n = static_cast<std::size_t>(std::max(frames_per_cycle, 0));
@@ -146,17 +159,24 @@ std::optional<SineSlips> fit_sine_with_slips(std::span<const double> z, int fram
         z.size(), std::max(kFewest, static_cast<std::size_t>(std::ceil(kPart * static_cast<double>(n)))));
     double least = std::numeric_limits<double>::infinity();
     Sine best = sine;
+    // A plate at rest fits a sine without amplitude exactly.
+    double low = kNaN, high = kNaN;  // fmin and fmax pass over heights that are not seen
+    for (const double v : z) low = std::fmin(low, v), high = std::fmax(high, v);
+    const double moving = 0.1 * (high - low);
     for (std::size_t first = 0; first + width <= z.size(); first += std::max<std::size_t>(1, width / 4)) {
       Sine part{.omega = sine.omega};
       // A part in which the plate hardly moves fits anything; it is judged by its share of the amplitude.
       const double off = fit(z, ticks, first, first + width, part) / std::max(part.amplitude(), 1e-9);
+      if (part.amplitude() < moving) continue;
       if (off < least) least = off, best = part;
     }
     sine = best;
     double scatter = std::max(least, 0.05) * sine.amplitude();
     for (int round = 0; round < 5 && sine.amplitude() > 0; ++round) {
       ticks = likeliest_ticks(z, sine, scatter, n);
-      fit(z, ticks, 0, z.size(), sine, round == 0 ? std::numeric_limits<double>::infinity() : 5 * scatter);
+      // Frames of a plate at rest would flatten the sine.
+      constexpr double kFar = 0.5;  // of the amplitude
+      fit(z, ticks, 0, z.size(), sine, std::max(5 * scatter, round == 0 ? kFar * sine.amplitude() : 0));
       scatter = std::max(scatter_of(deviations(z, ticks, sine)), kLeastScatter * sine.amplitude());
     }
     // The path starts from one part of the film, so that without slips it must not fit nearly as well.
@@ -188,11 +208,11 @@ std::optional<SineSlips> fit_sine_with_slips(std::span<const double> z, int fram
 
 std::optional<FreeSine> fit_free_sine(std::span<const double> all) {
   constexpr std::size_t kSearched = 2000;
-  const std::span<const double> z = all.first(std::min(all.size(), kSearched));
+  std::span<const double> z = all.first(std::min(all.size(), kSearched));
   if (std::count_if(z.begin(), z.end(), [](double v) { return std::isfinite(v); }) <
       static_cast<std::ptrdiff_t>(kFewest))
     return std::nullopt;
-  Ticks ticks(z.size());
+  Ticks ticks(all.size());
   std::iota(ticks.begin(), ticks.end(), 0);
   double least = std::numeric_limits<double>::infinity();
   Sine best;
@@ -207,8 +227,15 @@ std::optional<FreeSine> fit_free_sine(std::span<const double> all) {
   constexpr double kFiner = 30;
   const double found = best.omega;
   search(found - step, found + step, step / kFiner);
+  for (double known = step / kFiner; z.size() < all.size(); known /= 2) {
+    z = all.first(std::min(all.size(), 2 * z.size()));
+    least = std::numeric_limits<double>::infinity();
+    const double middle = best.omega;
+    search(middle - known, middle + known, known / 4);
+  }
   if (!(best.omega > 0)) return std::nullopt;
-  return FreeSine{kTurn / best.omega, best.amplitude(), scatter_of(deviations(z, ticks, best))};
+  return FreeSine{kTurn / best.omega, best.amplitude(), scatter_of(deviations(z, ticks, best)), best.c[0],
+                  turns_of(best)};
 }
 
 std::vector<int> frames_per_cycle_to_try(int stated, double apparent_period) {

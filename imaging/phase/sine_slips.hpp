@@ -19,6 +19,9 @@ struct SineSlips {
   std::vector<std::int64_t> ticks;  ///< [frames] frame intervals since frame 0; whole numbers
   std::int64_t dropped = 0, doubled = 0;
   std::size_t seen = 0;  ///< finite heights
+
+  /// Height of the sine in a frame. \param frames_per_cycle N of the fit
+  [[nodiscard]] double at(std::size_t frame, int frames_per_cycle) const;
 };
 
 /// Fits the sine and the ticks. The sine comes first from the part of 0.6 cycles that it fits best, then from
@@ -34,8 +37,14 @@ std::optional<SineSlips> fit_sine_with_slips(std::span<const double> heights, in
 struct FreeSine {
   double period = 0;  ///< frames
   double amplitude = 0, scatter = 0;
+  double mean = 0;
+  double phase = 0;  ///< at frame 0, cycles, in [0, 1)
+
+  /// Height of the sine in a frame.
+  [[nodiscard]] double at(std::size_t frame) const;
 };
-/// Fits it to the first 2000 frames by a search over all periods from 2 frames to the length of the stack.
+/// Fits it to the first 2000 frames by a search over all periods from 2 frames to the length of the stack,
+/// then to twice as many frames each round, near the period found before.
 /// \returns nothing for fewer than eight heights
 std::optional<FreeSine> fit_free_sine(std::span<const double> heights);
 

@@ -5,21 +5,20 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <complex>
-#include <numbers>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include "core/median.hpp"
+#include "core/constants.hpp"
 #include "core/table_text.hpp"
+#include "imaging/phase/phases_of_times.hpp"
 
 namespace twincell::imaging {
 
 namespace {
 
 constexpr double kMostCycles = 1e15;
-constexpr int kMostPhases = 100000;
 
 std::vector<std::string> split(const std::string& line) {
   std::vector<std::string> cells;
@@ -32,7 +31,7 @@ std::vector<std::string> split(const std::string& line) {
   return cells;
 }
 
-/// Reads the list and returns the cycles elapsed at each frame.
+/// Reads the list and returns the cycles elapsed at each frame; NaN for a frame without a time.
 std::vector<double> read_cycles(const std::filesystem::path& file, std::optional<double> drive_hz) {
   std::istringstream lines(read_table_text(file));
   std::string line;
@@ -61,6 +60,8 @@ std::vector<double> read_cycles(const std::filesystem::path& file, std::optional
                       "the list of triggers is in seconds, so the frequency of the drive is needed.");
   // Lines: one frame each, in the order of the stack.
   std::vector<double> cycles;
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  std::size_t timed = 0;
   while (next_line()) {
     const std::vector<std::string> cells = split(line);
     if (cells.size() != names.size())
@@ -76,18 +77,28 @@ std::vector<double> read_cycles(const std::filesystem::path& file, std::optional
     if (frame < n && value(frame) != static_cast<double>(cycles.size()))
       refuse("frame", fmt::format("{} where {} was expected; every frame of the stack needs its line.",
                                   cells[static_cast<std::size_t>(frame)], cycles.size()));
+    const std::ptrdiff_t stated = cycle < n ? cycle : time;
+    if (frame < n && cells[static_cast<std::size_t>(stated)].empty()) {  // out of lock
+      cycles.push_back(kNaN);
+      continue;
+    }
     const double now = cycle < n ? value(cycle) : value(time) * *drive_hz;
     if (std::abs(now) > kMostCycles) refuse(cycle < n ? "cycles" : "time_s", "the time exceeds 1e15 cycles.");
-    if (!cycles.empty() && now < cycles.back())
+    if (now < last)
       refuse(cycle < n ? "cycles" : "time_s",
              "the time decreases; frames must be in the order in which they were taken.");
-    cycles.push_back(now);
+    cycles.push_back(last = now);
+    first = std::min(first, now);
+    ++timed;
   }
   if (cycles.empty()) refuse("", "the list of triggers contains no frame.");
-  if (cycles.size() > 1 && cycles.back() == cycles.front())
+  if (timed == 0)
+    refuse(names[static_cast<std::size_t>(cycle < n ? cycle : time)],
+           "is empty in all lines; no frame has a time.");
+  if (timed > 1 && last == first)
     refuse(cycle < n ? "cycles" : "time_s",
            fmt::format("is {:g} in all {} frames; a list of triggers must give the time of each frame.",
-                       cycle < n ? cycles.front() : cycles.front() / *drive_hz, cycles.size()));
+                       cycle < n ? first : first / *drive_hz, timed));
   return cycles;
 }
 
@@ -96,43 +107,13 @@ std::vector<double> read_cycles(const std::filesystem::path& file, std::optional
 PhaseTable read_triggers(const std::filesystem::path& file, std::optional<double> drive_hz,
                          int frames_per_cycle) {
   const std::vector<double> cycles = read_cycles(file, drive_hz);
-  PhaseTable table;
-  table.method = PhaseMethod::triggers;
-  std::vector<double> steps;
-  for (std::size_t f = 1; f < cycles.size(); ++f) steps.push_back(cycles[f] - cycles[f - 1]);
-  const double step = steps.empty() ? 0 : upper_median(std::move(steps));
-  if (frames_per_cycle <= 0) {
-    if (!(step > 0) || 1 / step > kMostPhases)
-      throw InputError(
-          Where{.file = file.string(), .key = {}},
-          "the number of frames per cycle cannot be found from the list; give it with --frames-per-cycle.");
-    frames_per_cycle = std::max(1, static_cast<int>(std::lround(1 / step)));
-  }
-  table.frames_per_cycle = frames_per_cycle;
-  const double n = frames_per_cycle;
-  // A delay that all frames share is no jitter: their mean position between two phases, on the circle.
-  std::complex<double> around;
-  for (const double c : cycles) around += std::polar(1.0, 2 * std::numbers::pi * c * n);
-  table.offset = std::arg(around) / (2 * std::numbers::pi);
-  const auto ticks_at = [&](double c) { return std::round(c * n - table.offset); };
-  const double first = ticks_at(cycles.front());
-  table.first_phase = static_cast<int>(static_cast<std::int64_t>(first) -
-                                       static_cast<std::int64_t>(std::floor(first / n)) * frames_per_cycle);
-  double squares = 0, sum = 0;
-  std::vector<std::int64_t> ticks;
-  for (const double c : cycles) {
-    const double tick = ticks_at(c), late = c * n - table.offset - tick;
-    squares += late * late;
-    sum += late;
-    ticks.push_back(static_cast<std::int64_t>(tick - first));
-  }
-  set_phases(table, ticks);
-  if (const double elapsed = cycles.back() - cycles.front(); elapsed > 0)
-    table.period_frames = std::round(elapsed * n) / elapsed;
-  // The mean on the circle is the arithmetic mean to second order only.
-  const double mean = sum / static_cast<double>(cycles.size());
-  table.offset += mean;
-  table.jitter = std::sqrt(std::max(0.0, squares / static_cast<double>(cycles.size()) - mean * mean));
+  PhaseTable table{.method = PhaseMethod::triggers};
+  if (!set_phases_of_times(table, cycles, frames_per_cycle))
+    throw InputError(
+        Where{.file = file.string(), .key = {}},
+        "the number of frames per cycle cannot be found from the list; give it with --frames-per-cycle.");
+  if (!table.out_of_lock.empty())
+    table.warning += (table.warning.empty() ? "" : "; ") + out_of_lock_in_words(table);
   return table;
 }
 

@@ -9,6 +9,7 @@
 /// `time_s` is the time of the exposure in seconds, counted from an instant at which the plate passes its
 /// mean height upwards; it requires the frequency of the drive. `cycles` is the same in cycles of the drive.
 /// Both count on through all cycles. `frame` may be absent if the lines are in order and none is missing.
+/// With `frame`, the time of a frame that is out of lock is left empty ("7,"): it has no phase.
 
 #include <filesystem>
 #include <optional>
@@ -17,14 +18,11 @@
 
 namespace twincell::imaging {
 
-/// Reads a list and rounds each frame to the nearest of N_k phases. The delay that the frames have in common
-/// (their mean position between two phases, on the circle) is PhaseTable::offset and no jitter. If two frames
-/// have the same phase of the same cycle, the second counts as doubled. Skipped phases count as dropped
-/// frames. \param drive_hz frequency of the drive, required by `time_s` \param frames_per_cycle N_k; 0: one
-/// over the median step in cycles, rounded \throws InputError naming file and line if the list cannot be
-/// read, if times decrease or are all the same,
-///     if a value is not a number, or if both time_s and cycles are present; as check_column_names
-/// \throws ConfigError if the frequency is required but absent
+/// Reads a list and sets the phases as set_phases_of_times. \param drive_hz frequency of the drive, required
+/// by `time_s` \param frames_per_cycle N_k; 0: one over the median step in cycles, rounded \throws InputError
+/// naming file and line if the list cannot be read, if times decrease, are all the same or all absent, if a
+/// value is not a number, or if both time_s and cycles are present; as check_column_names \throws ConfigError
+/// if the frequency is required but absent
 PhaseTable read_triggers(const std::filesystem::path& file, std::optional<double> drive_hz,
                          int frames_per_cycle = 0);
 

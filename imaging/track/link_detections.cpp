@@ -14,7 +14,9 @@
 #include "imaging/link/initial_velocities.hpp"
 #include "imaging/phase/phase_estimation.hpp"
 #include "imaging/phase/plate_phases.hpp"
+#include "imaging/phase/repeated_instants.hpp"
 #include "imaging/phase/trigger_list.hpp"
+#include "imaging/stack/repeated_frames.hpp"
 
 namespace twincell::imaging {
 
@@ -55,13 +57,19 @@ class MotionOfBed {
   std::vector<double> steps_;
 };
 
-// Motion of the bed without known phases.
-BedMotion bed_motion(const DetectionStore& located, const LinkOptions& link, double unit_px) {
+bool is_repeat(std::span<const std::uint8_t> repeats, std::size_t frame) {
+  return frame < repeats.size() && repeats[frame] != 0;
+}
+
+// Motion of the bed without known phases, of the frames that repeat no other.
+BedMotion bed_motion(const DetectionStore& located, const LinkOptions& link, double unit_px,
+                     std::span<const std::uint8_t> repeats) {
   Linker linker(link);
   MotionOfBed motion(unit_px);
   std::vector<PixelPoint> places;
   std::vector<std::uint8_t> tracers;
   for (std::size_t f = 0; f < located.size(); ++f) {
+    if (is_repeat(repeats, f)) continue;
     const std::vector<TrackedBead> beads = located[f];
     places.clear();
     tracers.clear();
@@ -79,9 +87,11 @@ double unit_of(const CellDescription& cell, const LinkOptions& link) {
   return cell.pixels_per_sigma.value_or(link.diameter_px);
 }
 
+/// \param evidence of the frames that repeat no other; so are the phases, unless a list gives them
+/// \param repeats [frames of the film]
 PhaseTable determine_phases(const DetectionStore& located, const LinkOptions& link,
                             const CellDescription& cell, const PhaseSource& source,
-                            const LockEvidence& evidence) {
+                            const LockEvidence& evidence, std::span<const std::uint8_t> repeats) {
   switch (source.method) {
     case PhaseMethod::none:
       return fixed_phases({});
@@ -94,7 +104,7 @@ PhaseTable determine_phases(const DetectionStore& located, const LinkOptions& li
       if (std::optional<PhaseTable> seen =
               phases_from_plate(evidence.plate_px, options.frames_per_cycle, cell.phase_lock.offset))
         return *std::move(seen);
-      PhaseTable table = estimate_phases(bed_motion(located, link, unit_of(cell, link)), options);
+      PhaseTable table = estimate_phases(bed_motion(located, link, unit_of(cell, link), repeats), options);
       table.offset = cell.phase_lock.offset;
       return table;
     }
@@ -154,10 +164,11 @@ std::string LinkedDetections::surplus_tracks() const {
 
 namespace {
 
-/// Links the frames with the phases of `stack`. \param motion collects the motion of the bed; null: not
-/// needed
+/// Links the frames with the phases of `stack`. \param motion collects the motion of the bed, without
+/// the frames of `repeats`; null: not needed
 void link_frames(const DetectionStore& located, LinkOptions link, const CellDescription& cell,
-                 LinkedDetections& stack, MotionOfBed* motion, Progress& progress) {
+                 std::span<const std::uint8_t> repeats, LinkedDetections& stack, MotionOfBed* motion,
+                 Progress& progress) {
   if (const auto drive = cell.drive(); drive && stack.phases.locked() && cell.pixels_per_sigma) {
     const double dt = drive->period() / stack.phases.frames_per_cycle;
     link.fall_px = dt * dt * *cell.pixels_per_sigma;
@@ -187,7 +198,7 @@ void link_frames(const DetectionStore& located, LinkOptions link, const CellDesc
     const FrameAhead ahead{next.places, next.time, next.tracers};
     const std::vector<std::int64_t> ids =
         linker.next(frame.places, frame.time, frame.tracers, f + 1 < located.size() ? &ahead : nullptr);
-    if (motion != nullptr) motion->add(beads, ids, linker.mean_step());
+    if (motion != nullptr && !is_repeat(repeats, f)) motion->add(beads, ids, linker.mean_step());
     stack.tracks.resize(static_cast<std::size_t>(linker.n_tracks()));
     for (std::size_t k = 0; k < beads.size(); ++k) {
       beads[k].track = ids[k];
@@ -212,18 +223,41 @@ void link_frames(const DetectionStore& located, LinkOptions link, const CellDesc
 LinkedDetections link_detections(const DetectionStore& located, LinkOptions link, const CellDescription& cell,
                                  const PhaseSource& source, const std::filesystem::path& folder,
                                  Progress& progress, const LockEvidence& evidence) {
+  // Where the film itself gives the phases, repeated frames would spoil them.
+  const bool of_film = source.method == PhaseMethod::found ||
+                       (source.method == PhaseMethod::fixed && cell.phase_lock.locked() && !source.trusted);
+  const std::span<const std::uint8_t> repeats =
+      of_film ? std::span<const std::uint8_t>(evidence.repeats) : std::span<const std::uint8_t>();
   const auto linked = [&](PhaseTable phases, MotionOfBed* motion) {
     LinkedDetections stack{.frames = DetectionStore(folder), .tracks = {}, .phases = {}, .links = {}};
     stack.phases = std::move(phases);
-    link_frames(located, link, cell, stack, motion, progress);
+    link_frames(located, link, cell, repeats, stack, motion, progress);
     return stack;
   };
-  const PhaseTable phases = determine_phases(located, link, cell, source, evidence);
-  if (phases.not_checked.empty()) return linked(phases, nullptr);
-  MotionOfBed motion(unit_of(cell, link));
-  LinkedDetections stack = linked(phases, &motion);
-  check_lock_by_bed(stack.phases, motion.motion());
-  return stack.phases.frames.empty() ? std::move(stack) : linked(stack.phases, nullptr);
+  try {
+    PhaseTable phases = determine_phases(located, link, cell, source,
+                                         of_film ? without_repeats(evidence) : evidence, repeats);
+    if (phases.not_checked.empty()) {
+      if (!of_film && !evidence.repeats.empty())
+        phases.warning =
+            repeats_in_words(evidence.repeats) + (phases.warning.empty() ? "" : "; ") + phases.warning;
+      return linked(with_repeats(phases, repeats), nullptr);
+    }
+    MotionOfBed motion(unit_of(cell, link));
+    LinkedDetections stack = linked(with_repeats(phases, repeats), &motion);
+    check_lock_by_bed(phases, motion.motion());
+    if (phases.frames.empty()) {
+      stack.phases = with_repeats(phases, repeats);
+      return stack;
+    }
+    return linked(with_repeats(phases, repeats), nullptr);
+  } catch (const ConfigError& e) {
+    // Frames that are repeated may be the reason.
+    if (repeats.empty()) throw;
+    std::string said = e.what();
+    while (said.ends_with('.')) said.pop_back();
+    throw ConfigError({}, said + "; " + repeats_in_words(repeats) + ".");
+  }
 }
 
 }  // namespace twincell::imaging

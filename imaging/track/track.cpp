@@ -14,6 +14,7 @@
 #include "imaging/refine/paler_discs.hpp"
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/settings/size_of_scale.hpp"
+#include "imaging/stack/repeated_frames.hpp"
 #include "imaging/track/inside_cell.hpp"
 #include "imaging/track/locate_stack.hpp"
 
@@ -44,6 +45,7 @@ class Witnessed : public FrameSource {
     size_ = frame.size();
     if (const auto time = frames_.time_s()) evidence_.times_s.push_back(*time);
     evidence_.plate_px.push_back(plate_height_px(frame, bright_));
+    repeated_.add(frame);
     return true;
   }
   [[nodiscard]] std::size_t announced() const override { return frames_.announced(); }
@@ -53,6 +55,7 @@ class Witnessed : public FrameSource {
   /// Of the frames read so far. \post the time stamps are as many as the frames, or none
   [[nodiscard]] LockEvidence evidence() const {
     LockEvidence all = evidence_;
+    all.repeats = repeated_.repeats();
     if (all.times_s.size() != all.plate_px.size()) all.times_s.clear();
     return all;
   }
@@ -64,6 +67,7 @@ class Witnessed : public FrameSource {
   StageTimes* times_;
   cv::Size size_;
   LockEvidence evidence_;
+  RepeatedFrames repeated_;
 };
 
 Detections detect(FramesAhead& frames, const LocatorOptions& locator, const CellDescription& cell,

@@ -66,6 +66,13 @@ std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, cons
       if (interval == 0 && lock["doubled_frames"].size() < kMostNamed) lock["doubled_frames"].push_back(f);
     }
   }
+  if (!phases.out_of_lock.empty()) {
+    lock["out_of_lock"] = frames_in(phases.out_of_lock);
+    for (const FrameStretch& s : phases.out_of_lock)
+      if (lock["out_of_lock_frames"].size() < kMostNamed)
+        lock["out_of_lock_frames"].push_back({s.first, s.last});
+  }
+  if (phases.between > 0) lock["between_phases"] = phases.between;
   // Tracers: tracks too short for a slot are omitted.
   const LinkReport& l = stack.links;
   nlohmann::json tracers = {
@@ -125,15 +132,14 @@ void write_trajectory(const TrackedStack& stack, const TrackPlan& plan, Trajecto
   for (std::size_t f = 0; f < stack.frames.size(); ++f) {
     const auto number = static_cast<std::int64_t>(f);
     const FramePhase at = stack.phases.at(number);
-    if (f > 0 && at.interval == 0) continue;
+    if (!stack.phases.is_used(number)) continue;
     frame.step = stack.range.number(number);
     frame.phase = at.phase;
     frame.cycle = at.cycle;
     frame.time = static_cast<double>(f);
-    if (info.drive && stack.phases.locked()) {
-      const double fraction = (at.phase + stack.phases.offset) / stack.phases.frames_per_cycle;
-      frame.time = (static_cast<double>(at.cycle) + fraction) * info.drive->period();
-      frame.plate_height = info.drive->displacement(fraction - std::floor(fraction));
+    if (const auto cycles = stack.phases.cycles_at(number); info.drive && cycles) {
+      frame.time = *cycles * info.drive->period();
+      frame.plate_height = info.drive->displacement(*cycles - std::floor(*cycles));
     }
     frame.position.assign(info.n_beads, Vec3(nan, nan, nan));
     if (stack.has_errors) frame.position_sigma.assign(info.n_beads, Vec3(nan, nan, nan));

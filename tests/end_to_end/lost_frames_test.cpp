@@ -78,6 +78,81 @@ TEST(LostFrames, PhaseLockFoundReadsThePlate) {
   EXPECT_EQ(lock["doubled"], 0);
 }
 
+TEST(LostFrames, AFilmThatBeginsBeforeTheShakerIsAnalysedWhereItMoves) {
+  const TemporaryFolder folder;
+  const fs::path stack = folder.path() / "rest", cell = kDemo / "CELL.toml", list = folder.path() / "p.csv";
+  fs::create_directory(stack);
+  for (int f = 0; f < 120; ++f)
+    fs::create_symlink(kDemo / fmt::format("frame_{:05}.png", std::max(0, f - 40)),
+                       stack / fmt::format("frame_{:05}.png", f));
+  const Ran calibrated = run_program({"calibrate", "plate", stack, "--cell", cell, "--phases", list});
+  ASSERT_EQ(calibrated.code, 0) << calibrated.err;
+  EXPECT_NE(calibrated.err.find("does not follow the drive in 40 of 120 frames (0 to 39)"), std::string::npos)
+      << calibrated.err;
+  const fs::path whole = folder.path() / "whole.h5", part = folder.path() / "part.h5";
+  ASSERT_EQ(run_program({"track", kDemo, "-o", whole, "--cell", cell}).code, 0);
+  const Ran tracked =
+      run_program({"track", stack, "-o", part, "--cell", cell, "--phase-lock", list, "--json"});
+  ASSERT_EQ(tracked.code, 0) << tracked.err;
+  EXPECT_NE(tracked.err.find("40 of 120 frames (0 to 39)"), std::string::npos) << tracked.err;
+  const nlohmann::json lock = nlohmann::json::parse(tracked.out)["phase_lock"];
+  EXPECT_EQ(lock["dropped"], 0);
+  EXPECT_EQ(lock["out_of_lock"], 40);
+  const double value = s_b_of(whole)["value"];
+  EXPECT_NEAR(s_b_of(part)["value"].get<double>(), value, 1e-3 * value);
+  EXPECT_EQ(s_b_of(part)["n"], s_b_of(whole)["n"]);
+}
+
+TEST(LostFrames, APeriodThatIsNoWholeNumberOfFramesGivesTheSameBed) {
+  const fs::path demo = kDemo.parent_path();
+  const TemporaryFolder folder;
+  // Every third of 40 frames per cycle: 13 1/3 frames per cycle, none missing.
+  const fs::path whole = folder.path() / "whole.h5", part = folder.path() / "part.h5";
+  const fs::path cell = demo / "gamma-2.8.toml";
+  ASSERT_EQ(run_program({"track", demo / "gamma-2.8.tif", "-o", whole, "--cell", cell}).code, 0);
+  const Ran ran = run_program({"track", demo / "gamma-2.8.tif", "-o", part, "--cell", cell, "--frames", "::3",
+                               "--frames-per-cycle", "0", "--phase-lock", "found", "--json"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const nlohmann::json lock = nlohmann::json::parse(ran.out)["phase_lock"];
+  EXPECT_EQ(lock["frames_per_cycle"], 13);
+  EXPECT_EQ(lock["dropped"], 0);
+  EXPECT_NEAR(lock["period_frames"].get<double>(), 40.0 / 3, 0.01);
+  const double value = s_b_of(whole)["value"];
+  EXPECT_NEAR(s_b_of(part)["value"].get<double>(), value, 0.02 * value);
+}
+
+TEST(LostFrames, AConversionOfTheFrameRateIsSeenAndUndone) {
+  const TemporaryFolder folder;
+  const fs::path stack = folder.path() / "converted", drafted = folder.path() / "c.toml",
+                 list = folder.path() / "p.csv";
+  fs::create_directory(stack);
+  int to = 0;
+  for (int f = 0; f < 80; ++f)
+    for (int copy = 0; copy < (f % 5 == 4 ? 2 : 1); ++copy)
+      fs::create_symlink(kDemo / fmt::format("frame_{:05}.png", f),
+                         stack / fmt::format("frame_{:05}.png", to++));
+  const std::string said = "16 of 96 frames equal the frame before them to the bit";
+  const Ran surveyed = run_program({"new", stack, "-o", drafted, "--drive-gamma", "1.6", "--json"});
+  ASSERT_EQ(surveyed.code, 0) << surveyed.err;
+  EXPECT_EQ(nlohmann::json::parse(surveyed.out)["cells"][0]["frames_per_cycle"], 20) << surveyed.out;
+  EXPECT_NE(surveyed.err.find(said), std::string::npos) << surveyed.err;
+  const fs::path whole = folder.path() / "whole.h5", part = folder.path() / "part.h5";
+  ASSERT_EQ(run_program({"track", kDemo, "-o", whole, "--cell", kDemo / "CELL.toml"}).code, 0);
+  const double value = s_b_of(whole)["value"];
+  ASSERT_EQ(run_program({"calibrate", "plate", stack, "--cell", drafted, "--phases", list}).code, 0);
+  for (const std::string& lock : {std::string("20"), std::string("found"), list.string()}) {
+    const Ran ran = run_program({"track", stack, "-o", part, "--cell", kDemo / "CELL.toml", "--phase-lock",
+                                 lock, "--json", "--force"});
+    ASSERT_EQ(ran.code, 0) << lock << ": " << ran.err;
+    EXPECT_NE(ran.err.find(said), std::string::npos) << lock << ": " << ran.err;
+    EXPECT_EQ(nlohmann::json::parse(ran.out)["phase_lock"]["doubled"], 16) << lock;
+    EXPECT_NEAR(s_b_of(part)["value"].get<double>(), value, 1e-3 * value) << lock;
+  }
+  // The intact film, and one that begins at rest, raise no alarm.
+  const Ran intact = run_program({"track", kDemo, "-o", part, "--cell", kDemo / "CELL.toml", "--force"});
+  EXPECT_EQ(intact.err.find("to the bit"), std::string::npos) << intact.err;
+}
+
 TEST(LostFrames, CalibratePlateCountsThem) {
   const TemporaryFolder folder;
   const fs::path stack = stack_without(folder, {17, 40, 61});

@@ -3,6 +3,7 @@
 // sine.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <numbers>
@@ -173,6 +174,58 @@ TEST(DriveFit, FramesOutOfLockAreFlagged) {
   EXPECT_EQ(l.out_of_lock, 3);
   EXPECT_EQ(l.frames[90].lock, FrameLock::out_of_lock);
   EXPECT_NEAR(l.frames[90].residual, 3, 0.3);
+}
+
+TEST(DriveFit, FramesInWhichThePlateRestsHaveNoPhase) {
+  std::mt19937_64 generator(6);
+  for (const bool before : {true, false}) {
+    std::vector<double> h = heights_of({.phi = 0}, generator);
+    const std::vector<double> rest = heights_of({.amplitude = 0, .frames = 60}, generator);
+    h.insert(before ? h.begin() : h.end(), rest.begin(), rest.end());
+    const DriveFit l = fit_drive(h);
+    ASSERT_EQ(l.out_of_lock_stretches.size(), 1U) << before;
+    EXPECT_NEAR(static_cast<double>(imaging::frames_in(l.out_of_lock_stretches)), 60, 2) << before;
+    EXPECT_FALSE(l.has_phase(before ? 10 : h.size() - 10)) << "where the sine crosses the plate at rest";
+    EXPECT_TRUE(l.has_phase(130));
+    EXPECT_TRUE(std::any_of(l.notes.begin(), l.notes.end(), [](const std::string& note) {
+      return note.find("does not follow the drive in") != std::string::npos;
+    })) << before;
+  }
+  std::vector<double> misread = heights_of({}, generator);
+  misread[90] += 3;
+  EXPECT_TRUE(fit_drive(misread).has_phase(90)) << "a plate does not stop for one frame";
+  EXPECT_TRUE(fit_drive(misread).notes.empty());
+}
+
+TEST(DriveFit, FramesThatAreRepeatedToTheBitDoNotSpoilThePeriod) {
+  std::mt19937_64 generator(9);
+  const std::vector<double> each = heights_of({.frames = 100}, generator);
+  std::vector<double> h;
+  std::vector<std::uint8_t> repeats;
+  for (std::size_t f = 0; f < each.size(); ++f)
+    for (int copy = 0; copy < (f % 5 == 4 ? 2 : 1); ++copy) {
+      h.push_back(each[f]);
+      repeats.push_back(copy == 0 ? 0 : 1);
+    }
+  const DriveFit l = fit_drive(h, {.repeats = repeats});
+  EXPECT_EQ(l.frames_per_cycle, 20);
+  EXPECT_EQ(l.doubled, 20);
+  ASSERT_EQ(l.frames.size(), h.size());
+  EXPECT_EQ(l.frames[5].cycles, l.frames[4].cycles);
+  EXPECT_NEAR(l.frames[6].cycles - l.frames[5].cycles, 1.0 / 20, 1e-4);
+  ASSERT_FALSE(l.notes.empty());
+  EXPECT_NE(l.notes.front().find("20 of 120 frames equal the frame before them"), std::string::npos);
+}
+
+TEST(DriveFit, AWrongNumberOfFramesPerCycleIsNoPlateAtRest) {
+  std::mt19937_64 generator(8);
+  const std::vector<double> h = heights_of({.period = 20.5, .frames = 123}, generator);
+  expect_refusal<InputError>([&] { (void)fit_drive(h, {.frames_per_cycle = 41}); }, "moves by 12",
+                             "a period of 20.5 frames, but 41 frames per cycle are stated",
+                             "camera.frames_per_cycle");
+  expect_refusal<InputError>(
+      [&] { (void)fit_drive(heights_of({.amplitude = 0}, generator), {.frames_per_cycle = 20}); },
+      "does not move by more than the scatter");
 }
 
 TEST(DriveFit, WhatCannotBeLocked) {

@@ -164,6 +164,31 @@ TEST(LockCheck, AnotherFirstPhaseIsNamed) {
   }
 }
 
+TEST(LockCheck, FramesInWhichThePlateRestsAreLeftOutWithAWord) {
+  for (const std::size_t rest : {20U, 40U, 60U})
+    for (const bool before : {true, false})
+      for (unsigned seed = 0; seed < 5; ++seed) {
+        std::vector<double> plate = plate_of({.frames = 200, .drop = {}}, seed);
+        plate.insert(before ? plate.begin() : plate.end(), rest, 40.0);
+        const PhaseTable table = check_lock({20, 0}, {.plate_px = plate, .times_s = {}});
+        EXPECT_EQ(table.checked_by, "the plate");
+        EXPECT_EQ(table.dropped + table.doubled, 0) << rest << ' ' << before << ": " << table.warning;
+        EXPECT_NEAR(static_cast<double>(frames_in(table.out_of_lock)), static_cast<double>(rest), 2);
+        EXPECT_NE(table.warning.find("does not follow the drive in"), std::string::npos) << table.warning;
+        EXPECT_FALSE(table.is_used(before ? 3 : static_cast<std::int64_t>(plate.size()) - 3));
+        EXPECT_EQ(table.at(100).phase, 0) << rest << ' ' << before;
+        EXPECT_TRUE(table.is_used(100));
+      }
+}
+
+TEST(LockCheck, APlateThatIsOftenMisreadIsNamed) {
+  std::vector<double> plate = plate_of({.frames = 200, .drop = {}}, 1);
+  for (std::size_t f = 7; f < plate.size(); f += 20) plate[f] += 8;
+  const PhaseTable table = check_lock({20, 0}, {.plate_px = plate, .times_s = {}});
+  EXPECT_TRUE(table.out_of_lock.empty());
+  EXPECT_NE(table.warning.find("off its sine in 10 of 200 frames"), std::string::npos) << table.warning;
+}
+
 TEST(LockCheck, AFilmOfTwoStrengthsIsNoFilmWithLostFrames) {
   std::vector<double> plate = plate_of({.frames = 60, .drop = {}}, 1);
   const std::vector<double> weaker = plate_of({.frames = 60, .amplitude = 7, .drop = {}}, 2);

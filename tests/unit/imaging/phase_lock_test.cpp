@@ -1,6 +1,7 @@
 // Phases from a fixed number per cycle, from a list, and from the motion of the bed.
 #include "imaging/phase/phase_lock.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,10 +10,13 @@
 #include <iostream>
 #include <numbers>
 #include <random>
+#include <set>
+#include <utility>
 
 #include "core/error.hpp"
 #include "imaging/phase/phase_estimation.hpp"
 #include "imaging/phase/trigger_list.hpp"
+#include "tests/support/complaint.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace twincell;
@@ -124,6 +128,101 @@ TEST(TriggerList, ACommonDelayIsAnOffsetAndNoJitter) {
     EXPECT_NEAR(t.jitter.value(), 0.01, 1e-4) << late;
     EXPECT_EQ(t.dropped + t.doubled, 0) << late;
   }
+}
+
+TEST(TriggerList, AFrameWithoutATimeHasNoPhase) {
+  const TemporaryFolder folder;
+  // Seven frames before the shaker starts, and two in a pause; the camera lost a frame after frame 14.
+  std::string text = "frame,cycles\n";
+  for (int f = 0; f < 60; ++f) {
+    const bool rests = f < 7 || f == 30 || f == 31;
+    text += std::to_string(f) + "," + (rests ? "" : std::to_string(2 + (f + (f > 14 ? 1 : 0)) / 20.0)) + "\n";
+  }
+  const PhaseTable t = read_triggers(write_list(folder, text), std::nullopt);
+  EXPECT_EQ(t.frames_per_cycle, 20);
+  EXPECT_EQ(t.first_phase, 7);
+  EXPECT_EQ(t.dropped, 1);
+  EXPECT_EQ(t.doubled, 0);
+  EXPECT_EQ(t.out_of_lock, (std::vector<FrameStretch>{{0, 6}, {30, 31}}));
+  EXPECT_NE(t.warning.find("9 of 60 frames (0 to 6 and 30 to 31)"), std::string::npos) << t.warning;
+  for (const int f : {0, 6, 30, 31}) {
+    EXPECT_EQ(t.at(f).phase, -1) << f;
+    EXPECT_FALSE(t.is_used(f)) << f;
+    EXPECT_FALSE(t.cycles_at(f)) << f;
+  }
+  EXPECT_EQ(t.at(7).phase, 7);
+  EXPECT_EQ(t.at(7).cycle, 0);
+  EXPECT_EQ(t.at(32).phase, 13);
+  EXPECT_EQ(t.at(32).cycle, 1);
+  EXPECT_TRUE(t.is_used(32));
+  expect_refusal<InputError>(
+      [&] { (void)read_triggers(write_list(folder, "frame,cycles\n0,\n1,\n"), std::nullopt); },
+      "is empty in all lines");
+  EXPECT_THROW(read_triggers(write_list(folder, "cycles,x\n0,1\n,1\n"), std::nullopt), InputError)
+      << "without frame numbers a missing time may be a damaged line";
+}
+
+TEST(TriggerList, APeriodThatIsNoWholeNumberOfFramesDropsNone) {
+  const TemporaryFolder folder;
+  for (const double period : {20.5, 19.95, 13.0 + 1.0 / 3, 7.2, 20.8, 100.4}) {
+    std::string text = "cycles\n";
+    const int frames = static_cast<int>(20 * period);
+    for (int f = 0; f < frames; ++f) text += fmt::format("{:.6f}\n", (f + 5) / period);
+    const PhaseTable t = read_triggers(write_list(folder, text), std::nullopt);
+    ASSERT_TRUE(t.period_frames) << period;
+    EXPECT_NEAR(*t.period_frames, period, 1e-4) << period;
+    EXPECT_EQ(t.dropped + t.doubled, 0) << period;
+    EXPECT_EQ(t.frames_per_cycle, static_cast<int>(period + 0.1)) << period;
+    EXPECT_EQ(t.warning, "") << period;
+    std::set<std::pair<std::int64_t, std::int32_t>> seen;
+    std::int64_t between = 0;
+    for (int f = 0; f < frames; ++f) {
+      ASSERT_TRUE(t.cycles_at(f)) << period << ' ' << f;
+      EXPECT_NEAR(*t.cycles_at(f), (f + 5) / period, 1e-6) << period << ' ' << f;
+      EXPECT_TRUE(t.is_used(f));
+      const FramePhase at = t.at(f);
+      EXPECT_EQ(at.interval, 1) << period << ' ' << f;
+      between += at.phase < 0 ? 1 : 0;
+      if (at.phase < 0) continue;
+      EXPECT_TRUE(seen.emplace(at.cycle, at.phase).second) << period << ": two frames at one phase";
+      const double off = (static_cast<double>(at.cycle) + static_cast<double>(at.phase) / t.frames_per_cycle -
+                          (f + 5) / period) *
+                         t.frames_per_cycle;
+      EXPECT_LE(std::abs(off), 0.5001) << period << ' ' << f;
+    }
+    EXPECT_EQ(between, t.between) << period;
+    EXPECT_LE(between, frames / static_cast<int>(period) + 1) << period;
+    // Every phase of every whole cycle has its frame, unless the period is a little below N_k.
+    if (t.frames_per_cycle > period) continue;
+    for (std::int64_t j = 1; j < 19; ++j)
+      for (std::int32_t k = 0; k < t.frames_per_cycle; ++k)
+        EXPECT_TRUE(seen.contains({j, k})) << period << ' ' << j << ' ' << k;
+  }
+}
+
+TEST(TriggerList, LostFramesOfAnUnevenPeriodAreCounted) {
+  const TemporaryFolder folder;
+  std::string text = "cycles\n";
+  for (int f = 0; f < 246; ++f)
+    if (f != 50 && f != 51 && f != 120)
+      text += fmt::format("{:.6f}\n", f / 20.5) + (f == 200 ? fmt::format("{:.6f}\n", f / 20.5) : "");
+  const PhaseTable t = read_triggers(write_list(folder, text), std::nullopt);
+  EXPECT_EQ(t.dropped, 3);
+  EXPECT_EQ(t.doubled, 1);
+  EXPECT_NEAR(*t.period_frames, 20.5, 1e-4);
+  EXPECT_FALSE(t.is_used(198)) << "the second of the two frames at one instant";
+}
+
+TEST(TriggerList, StatedFramesPerCycleThatTheListContradictsAreNamed) {
+  const TemporaryFolder folder;
+  std::string text = "cycles\n";
+  for (int f = 0; f < 123; ++f) text += fmt::format("{:.6f}\n", f / 20.5);
+  const PhaseTable t = read_triggers(write_list(folder, text), std::nullopt, 41);
+  EXPECT_EQ(t.frames_per_cycle, 20);
+  EXPECT_EQ(t.dropped, 0);
+  EXPECT_NE(t.warning.find("41 frames per cycle are stated, but the frames are 20.5 per cycle"),
+            std::string::npos)
+      << t.warning;
 }
 
 TEST(TriggerList, RefusesWhatIsNone) {

@@ -89,6 +89,37 @@ TEST(PlatePhases, APlateThatCannotTellGivesNothing) {
   EXPECT_FALSE(phases_from_plate(std::vector<double>(200, 40.0), 20)) << "at rest";
   EXPECT_FALSE(phases_from_plate(plate_at(ticks, 20, 0.8, 0), 20)) << "moves by less than a pixel";
   EXPECT_FALSE(phases_from_plate(plate_at(ticks, 20, 12, 0), 24)) << "another number of frames per cycle";
-  EXPECT_FALSE(phases_from_plate(plate_at(ticks, 19.6, 12, 0), 0)) << "no whole number of frames";
   EXPECT_FALSE(phases_from_plate(plate_at(ticks, 20, 12, 0), 2));
+}
+
+TEST(PlatePhases, APeriodThatIsNoWholeNumberOfFramesIsKept) {
+  for (const double noise : {0.0, 0.3})
+    for (const double period : {20.5, 19.6, 13.0 + 1.0 / 3})
+      for (const int stated : {0, static_cast<int>(std::lround(period))}) {
+        const std::vector<double> ticks = ticks_of(300, 3, {}, {});
+        const auto table = phases_from_plate(plate_at(ticks, period, 12, noise), stated);
+        ASSERT_TRUE(table) << period << ' ' << stated;
+        EXPECT_EQ(table->frames_per_cycle, static_cast<int>(period + 0.1)) << stated;
+        EXPECT_NEAR(table->period_frames.value(), period, 0.01) << stated;
+        EXPECT_EQ(table->dropped + table->doubled, 0) << period << ' ' << stated;
+        for (std::size_t f = 0; f < ticks.size(); ++f)
+          EXPECT_NEAR(table->cycles_at(static_cast<std::int64_t>(f)).value() * period, ticks[f], 0.1)
+              << period << ' ' << stated << ' ' << f;
+      }
+}
+
+TEST(PlatePhases, FramesBeforeTheShakerStartsHaveNoPhase) {
+  for (const int rest : {40, 100})
+    for (const double noise : {0.0, 0.3}) {
+      std::vector<double> heights(static_cast<std::size_t>(rest), 40.0);
+      const std::vector<double> moving = plate_at(ticks_of(240, 0, {}, {}), 20, 12, noise);
+      heights.insert(heights.end(), moving.begin(), moving.end());
+      const auto table = phases_from_plate(heights, 20);
+      ASSERT_TRUE(table) << rest << ' ' << noise;
+      EXPECT_EQ(table->dropped + table->doubled, 0) << rest << ' ' << noise;
+      ASSERT_EQ(table->out_of_lock.size(), 1U) << rest << ' ' << noise;
+      EXPECT_NEAR(static_cast<double>(frames_in(table->out_of_lock)), rest, 2) << noise;
+      EXPECT_NE(table->warning.find("does not follow the drive"), std::string::npos) << table->warning;
+      EXPECT_EQ(table->at(rest + 45).phase, 5) << rest << ' ' << noise;
+    }
 }

@@ -1,0 +1,75 @@
+#include "imaging/stack/repeated_frames.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/median.hpp"
+
+namespace twincell::imaging {
+
+namespace {
+
+/// 64-bit hash of the pixels (multiply and rotate, eight bytes at a time).
+std::uint64_t hash_of(const cv::Mat& frame) {
+  constexpr std::uint64_t kMultiplier = 0x9E3779B97F4A7C15ULL;
+  std::uint64_t hash =
+      static_cast<std::uint64_t>(frame.cols) * kMultiplier ^ static_cast<std::uint64_t>(frame.rows);
+  const std::size_t bytes = static_cast<std::size_t>(frame.cols) * frame.elemSize();
+  for (int y = 0; y < frame.rows; ++y) {
+    const unsigned char* row = frame.ptr(y);
+    for (std::size_t at = 0; at < bytes; at += sizeof(std::uint64_t)) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, row + at, std::min(sizeof word, bytes - at));
+      hash = (hash ^ word) * kMultiplier;
+      hash ^= hash >> 29U;
+    }
+  }
+  return hash;
+}
+
+}  // namespace
+
+void RepeatedFrames::add(const cv::Mat& frame) {
+  hashes_.push_back(hash_of(frame));
+  const bool comparable = before_.size() == frame.size() && before_.type() == frame.type();
+  changes_.push_back(comparable ? cv::norm(frame, before_, cv::NORM_L1) / static_cast<double>(frame.total())
+                                : 0);
+  frame.copyTo(before_);
+}
+
+std::vector<std::uint8_t> RepeatedFrames::repeats() const {
+  constexpr std::size_t kLongest = 6;
+  constexpr double kUsual = 0.5;
+  const std::size_t n = hashes_.size();
+  std::vector<double> moved;
+  for (std::size_t f = 1; f < n; ++f)
+    if (hashes_[f] != hashes_[f - 1]) moved.push_back(changes_[f]);
+  if (moved.empty() || moved.size() + 1 == n) return {};
+  const double least = kUsual * upper_median(std::move(moved));
+  std::vector<std::uint8_t> repeats(n, 0);
+  bool certain = false;
+  for (std::size_t first = 0, last = 0; first < n; first = ++last) {
+    while (last + 1 < n && hashes_[last + 1] == hashes_[first]) ++last;
+    if (last == first || last - first + 1 > kLongest) continue;
+    std::fill(repeats.begin() + static_cast<std::ptrdiff_t>(first) + 1,
+              repeats.begin() + static_cast<std::ptrdiff_t>(last) + 1, std::uint8_t{1});
+    certain = certain || (first > 0 && last + 1 < n && hashes_[first - 1] != hashes_[last + 1] &&
+                          changes_[first] >= least && changes_[last + 1] >= least);
+  }
+  return certain ? repeats : std::vector<std::uint8_t>{};
+}
+
+std::string repeats_in_words(std::span<const std::uint8_t> repeats) {
+  const auto first = std::find(repeats.begin(), repeats.end(), 1);
+  if (first == repeats.end()) return {};
+  return fmt::format(
+      "{} of {} frames equal the frame before them to the bit, the first of them frame {}: a conversion of "
+      "the "
+      "frame rate, or a copy, has repeated them, as noise makes no two frames of a camera equal; export the "
+      "film without a conversion",
+      std::count(repeats.begin(), repeats.end(), 1), repeats.size(), first - repeats.begin());
+}
+
+}  // namespace twincell::imaging
