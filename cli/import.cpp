@@ -31,6 +31,14 @@ struct ImportOptions {
 };
 
 /// Notes on units and sizes that no file of beads is likely to have.
+/// Says which numbers the beads have now; empty if they keep those of the file.
+std::string new_numbers(const std::vector<std::int64_t>& ids) {
+  if (ids.empty() || ids.back() == static_cast<std::int64_t>(ids.size()) - 1)
+    return {};  // ascending, distinct
+  return fmt::format("the beads {} to {} of the file are numbered 0 to {} here, in this order", ids.front(),
+                     ids.back(), ids.size() - 1);
+}
+
 void note_doubts(const Common& common, const ForeignTrajectory& source, double sigma) {
   constexpr double kClosest = 0.5, kFarthest = 3;  // sigma
   if (const double d = source.spacing(); std::isfinite(d) && (d < kClosest || d > kFarthest))
@@ -54,12 +62,6 @@ void note_doubts(const Common& common, const ForeignTrajectory& source, double s
          fmt::format("the numbers of the steps or frames leave out {:g} {} between the {} of the file.",
                      missing, missing > 1 ? "frames" : "frame", source.n_frames()));
   if (const std::string said = source.assumption(); !said.empty()) note(common, said);
-  const std::vector<std::int64_t>& ids = source.ids();
-  if (ids.back() != static_cast<std::int64_t>(ids.size()) - 1)  // ascending and distinct
-    note(common,
-         fmt::format("the beads are numbered from 0 to {}, in the order of their numbers in the file, {} to "
-                     "{}; --tracers and exports name these new numbers.",
-                     ids.size() - 1, ids.front(), ids.back()));
   if (source.replaces_times()) note(common, "the times of the file are replaced by those of --timestep.");
 }
 
@@ -96,6 +98,11 @@ void run(ImportOptions& o, const Common& common) {
   for (const std::string& doubt : imaging::implausible_numbers(imaging::shaken_cell(info.scale, info.drive)))
     note(common, doubt);
   for (const std::string& doubt : watched.doubts()) note(common, doubt);
+  // Some programs count from 1, which the summary says; gaps in the numbers are no such habit.
+  const std::string numbers = new_numbers(source.ids());
+  const bool gaps = !numbers.empty() && source.ids().back() - source.ids().front() + 1 !=
+                                            static_cast<std::int64_t>(source.ids().size());
+  if (gaps) note(common, numbers + "; --tracers and exports use the new numbers.");
   if (!info.drive) note(common, "no drive was given: the phases and the height of the plate are absent.");
   print_result(
       common,
@@ -104,8 +111,9 @@ void run(ImportOptions& o, const Common& common) {
        {"beads", info.n_beads},
        {"source", info.source},
        {"missing_beads", info.columns.identity}},
-      fmt::format("{} of {}{}\n{}\n", counted(source.n_frames(), "frame"), counted(info.n_beads, "bead"),
-                  info.columns.identity ? ", not all of them in every frame" : "", o.output));
+      fmt::format("{} of {}{}\n{}{}\n", counted(source.n_frames(), "frame"), counted(info.n_beads, "bead"),
+                  info.columns.identity ? ", not all of them in every frame" : "",
+                  numbers.empty() ? "" : numbers + "\n", o.output));
 }
 
 }  // namespace

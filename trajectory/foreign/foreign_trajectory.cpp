@@ -271,13 +271,13 @@ ForeignTrajectory::ForeignTrajectory(const std::filesystem::path& path, const Fo
   SnapshotReader& reader = *source;
   if (d.o.origin) d.origin = reader.upright(*d.o.origin);
   struct Bead {
-    double radius, mass;
+    double radius, mass;  ///< mean of the radii; first mass
     bool tracer;
+    double least, most;  ///< radii
+    double n = 1;        ///< frames
   };
   std::map<std::int64_t, Bead> seen;
   std::size_t fewest = 0;
-  constexpr double kSameRadius = 1e-6;
-  bool radii_change = false;
   Snapshot s, first;
   while (next_sorted(reader, s)) {
     if (d.n_frames == 0) {
@@ -302,11 +302,13 @@ ForeignTrajectory::ForeignTrajectory(const std::filesystem::path& path, const Fo
     }
     for (const SnapshotBead& a : s.beads) {
       const Bead bead{a.radius / d.o.sigma, a.mass / d.o.bead_mass.value_or(1),
-                      d.tracer_type(reader.columns()) == a.type};
-      const auto [known, is_new] = seen.emplace(a.id, bead);
-      radii_change =
-          radii_change ||
-          (!is_new && !(std::abs(bead.radius - known->second.radius) <= kSameRadius * known->second.radius));
+                      d.tracer_type(reader.columns()) == a.type, a.radius / d.o.sigma, a.radius / d.o.sigma};
+      const auto [at, is_new] = seen.emplace(a.id, bead);
+      if (is_new) continue;
+      Bead& known = at->second;
+      known.radius += (bead.radius - known.radius) / ++known.n;  // equal radii stay equal to the bit
+      known.least = std::min(known.least, bead.radius);
+      known.most = std::max(known.most, bead.radius);
     }
     fewest = std::min(fewest, s.beads.size());
     ++d.n_frames;
@@ -321,9 +323,12 @@ ForeignTrajectory::ForeignTrajectory(const std::filesystem::path& path, const Fo
   }
   d.info.columns.identity = fewest < d.ids.size();
   d.assumption = reader.assumption();
-  if (radii_change && reader.columns().radius)
+  constexpr double kSameSize = 0.1;  // sizes that a tracker measures vary from frame to frame
+  if (reader.columns().radius && std::ranges::any_of(seen, [](const auto& bead) {
+        return bead.second.most - bead.second.least > kSameSize * bead.second.radius;
+      }))
     d.assumption += std::string(d.assumption.empty() ? "" : " ") +
-                    "the radii of beads change from frame to frame: each keeps its first one.";
+                    "the radii of beads change by more than a tenth from frame to frame: each has its mean.";
   const Vec3 along_y = reader.upright(Vec3(0, 1, 0));
   d.complete(first, reader.columns(), along_y.minCoeff() < 0);
 }

@@ -142,8 +142,8 @@ TEST(BedDrive, IsNotShownByBedsThatFlyTooLongOrAreNone) {
 // do where the bed lands on its plate.
 TEST(BedDrive, UpsideDownPicturesAndBedsAtRestContradictTheDrive) {
   int found = 0, flying = 0;
-  for (const double gamma : {0.5, 0.9, 1.2, 1.6, 2.0, 2.5, 3.0, 4.5})
-    for (const int layers : {4, 10, 20}) {
+  for (const double gamma : {0.9, 1.6, 2.0, 3.0})
+    for (const int layers : {4, 20}) {
       const MemoryTrajectory run = simulated(bed(gamma, 1, "random", layers));
       EXPECT_EQ(drive_seen(run, 0.2, 1, 1).contradiction, "") << gamma << ", " << layers << " layers";
       MemoryTrajectory flipped(run.info());
