@@ -10,6 +10,7 @@
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/track/track.hpp"
+#include "tests/support/one_picture.hpp"
 
 namespace twincell::imaging {
 namespace {
@@ -22,22 +23,6 @@ cv::Mat first_frame(const std::filesystem::path& stack) {
   open_frames(stack)->next(frame);
   return frame;
 }
-
-/// A stack of one picture in memory.
-class OnePicture : public FrameSource {
- public:
-  explicit OnePicture(cv::Mat picture) : picture_(std::move(picture)) {}
-  bool next(cv::Mat& frame) override {
-    frame = picture_;
-    picture_ = cv::Mat();
-    return !frame.empty();
-  }
-  [[nodiscard]] std::size_t announced() const override { return 1; }
-  [[nodiscard]] std::string current() const override { return "picture"; }
-
- private:
-  cv::Mat picture_;
-};
 
 struct Seen {
   LocatorOptions settings;

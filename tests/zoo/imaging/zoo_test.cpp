@@ -19,6 +19,7 @@
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/track/locate_stack.hpp"
 #include "imaging/track/overlay.hpp"
+#include "tests/support/one_picture.hpp"
 #include "tests/zoo/imaging/kinds.hpp"
 
 namespace twincell::zoo {
@@ -50,22 +51,6 @@ const std::map<std::string, std::array<Mark, 4>> kMarks = {
     {"tape", {{{1, 1, 0.015}, {1, 1, 0.01}, {1, 1, 0.009}, {1, 1, 0.005}}}},
 };
 
-/// A stack of one picture in memory.
-class OnePicture : public imaging::FrameSource {
- public:
-  explicit OnePicture(cv::Mat picture) : picture_(std::move(picture)) {}
-  bool next(cv::Mat& frame) override {
-    frame = picture_;
-    picture_ = cv::Mat();
-    return !frame.empty();
-  }
-  [[nodiscard]] std::size_t announced() const override { return 1; }
-  [[nodiscard]] std::string current() const override { return "picture"; }
-
- private:
-  cv::Mat picture_;
-};
-
 struct Seen {
   imaging::Score score;
   std::size_t tracers = 0;
@@ -74,7 +59,7 @@ struct Seen {
 };
 
 Seen look(const Exhibit& exhibit, const std::string& keep) {
-  OnePicture stack(exhibit.picture);
+  imaging::OnePicture stack(exhibit.picture);
   imaging::FramesAhead ahead(stack);
   imaging::LocatorOptions open;
   open.polarity_known = false;
