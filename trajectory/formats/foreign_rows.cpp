@@ -85,7 +85,7 @@ void ForeignRows::find_crossings(const h5::Series& id, const h5::Series& positio
         continue;
       }
       for (int k = 0; k < 3; ++k) {
-        if (!box_.periodic(static_cast<Axis>(k))) continue;
+        if (!box_.periodic(static_cast<Axis>(k)) || !(size[k] > 0)) continue;
         const double r = frame.position[i][k];
         least[k] = std::min(least[k], r);
         most[k] = std::max(most[k], r);
