@@ -21,7 +21,9 @@ bool InsideCell::operator()(PixelPoint centre) const {
          !(cell_.height && r.z() > *cell_.height + 0.5) && !(lowest_ && r.z() < *lowest_);
 }
 
-void require_some_inside(const CellDescription& cell, std::size_t inside, std::size_t outside) {
+void require_some_inside(const CellDescription& cell, std::size_t inside, std::size_t outside,
+                         bool of_table) {
+  if (inside == 0 && outside == 0 && of_table) throw InputError(Where{}, "The table has no bead.");
   if (inside == 0 && outside == 0)
     throw InputError(
         Where{},
@@ -30,13 +32,14 @@ void require_some_inside(const CellDescription& cell, std::size_t inside, std::s
   if (inside >= outside) return;
   throw ConfigError(
       Where{.file = {}, .key = "camera.origin_px"},
-      fmt::format(
-          "is {:g}, {:g}, but {} the {} located beads {} inside the cell{}{}; correct the origin, "
-          "camera.pixels_per_sigma = {:g}, or the size of the cell, or select a part of the picture (--roi).",
-          cell.origin->x_px, cell.origin->y_px,
-          inside == 0 ? std::string("none of") : fmt::format("only {} of", inside), inside + outside,
-          inside == 0 ? "lies" : "lie", cell.width ? fmt::format(" of width {:g}", *cell.width) : "",
-          cell.height ? fmt::format(" and height {:g}", *cell.height) : "", *cell.pixels_per_sigma));
+      fmt::format("is {:g}, {:g}, but {} the {} located beads {} inside the cell{}{}; correct the origin, "
+                  "camera.pixels_per_sigma = {:g}, or the size of the cell, {}.",
+                  cell.origin->x_px, cell.origin->y_px,
+                  inside == 0 ? std::string("none of") : fmt::format("only {} of", inside), inside + outside,
+                  inside == 0 ? "lies" : "lie", cell.width ? fmt::format(" of width {:g}", *cell.width) : "",
+                  cell.height ? fmt::format(" and height {:g}", *cell.height) : "", *cell.pixels_per_sigma,
+                  of_table ? "or write the table in px with y downwards"
+                           : "or select a part of the picture (--roi)"));
 }
 
 }  // namespace twincell::imaging

@@ -25,6 +25,8 @@ class InsideCell {
 };
 
 /// \throws InputError if there is no bead at all; ConfigError if most beads are outside the cell
-void require_some_inside(const CellDescription& cell, std::size_t inside, std::size_t outside);
+/// \param of_table the beads come from a table, not from frames
+void require_some_inside(const CellDescription& cell, std::size_t inside, std::size_t outside,
+                         bool of_table = false);
 
 }  // namespace twincell::imaging

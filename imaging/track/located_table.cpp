@@ -230,7 +230,7 @@ TrackedStack track_located(LocatedTable located, LinkOptions link, const CellDes
     n_inside += beads.size();
     kept.append(beads);
   }
-  require_some_inside(cell, n_inside, n_outside);
+  require_some_inside(cell, n_inside, n_outside, true);
   link.diameter_px = located.diameter_px;
   TrackedStack stack{link_detections(kept, link, cell, source, folder, progress)};
   stack.locator.diameter_px = located.diameter_px;

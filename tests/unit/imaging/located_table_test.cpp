@@ -117,6 +117,22 @@ TEST(LocatedTable, WhatIsNoTableOfBeadsIsNamed) {
             std::string::npos);
 }
 
+TEST(LocatedTable, BeadsOutsideTheCellAreSaidToBeOfATable) {
+  CellDescription cell;
+  cell.origin = PixelPoint{20, 200};
+  cell.pixels_per_sigma = 10;
+  cell.width = 10;
+  const Table table = table_of({"frame", "x", "y"}, {{0, 0}, {300, 400}, {100, 100}});
+  const std::string said = complaint_of([&] {
+    (void)track_located(read_located(table, {.columns = {}, .diameter_px = 10, .picture = {}}, {}), {}, cell,
+                        {}, {});
+  });
+  EXPECT_NE(said.find("none of the 2 located beads lies inside the cell of width 10"), std::string::npos)
+      << said;
+  EXPECT_NE(said.find("or write the table in px with y downwards"), std::string::npos) << said;
+  EXPECT_EQ(said.find("--roi"), std::string::npos) << said;
+}
+
 // Rotation and distortion are about the centre of the picture, which a table does not tell.
 TEST(LocatedTable, ATurnedCameraNeedsThePicture) {
   CellDescription cell;
