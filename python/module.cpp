@@ -90,11 +90,11 @@ void PythonProgress::update(std::int64_t done, std::int64_t total) {
   const bool must = (!called_ || (total > 0 && done >= total)) && !callback_.is_none();
   if (const auto now = Clock::now(); now - last_ < kPause && !must) return;
   last_ = Clock::now();
-  called_ = true;
+  called_ = called_ || total > 0;
   const py::gil_scoped_acquire lock;
   try {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    if (!callback_.is_none()) callback_(done, total);
+    if (!callback_.is_none() && total > 0) callback_(done, total);  // total 0: only a look for signals
   } catch (py::error_already_set&) {
     raised_ = std::current_exception();
     throw Interrupted(ExitCode::interrupted);

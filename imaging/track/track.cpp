@@ -115,6 +115,16 @@ Detections detect(FramesAhead& frames, const LocatorOptions& locator, const Cell
 }
 
 /// The smallest of the diameters, which is the smallest distance of two beads.
+/// Looks for signals, and leaves the bar of the frames, which are all located, as it is.
+class OnlySignals : public Progress {
+ public:
+  explicit OnlySignals(Progress& frames) : frames_(frames) {}
+  void update(std::int64_t /*done*/, std::int64_t /*total*/) override { frames_.update(0, 0); }
+
+ private:
+  Progress& frames_;
+};
+
 double smallest_diameter(const LocatorOptions& locator) {
   double smallest = locator.diameter_px;
   for (const double other : locator.other_diameters_px) smallest = std::min(smallest, other);
@@ -165,8 +175,9 @@ TrackedStack track_stack(FrameSource& stack, const LocatorOptions& given, LinkOp
   link.closed = cell.sides == Boundary::wall && !detected.cut_by_frame;
   link.diameter_px = smallest_diameter(locator);
   Stage linking(times, "linking", "links");
+  OnlySignals signals(progress);
   LinkedDetections linked =
-      link_detections(detected.frames, link, cell, source, folder, Progress::none(), witnessed.evidence());
+      link_detections(detected.frames, link, cell, source, folder, signals, witnessed.evidence());
   linking.count(static_cast<double>(linked.links.links));
   return {std::move(linked),      locator,
           witnessed.size().width, witnessed.size().height,

@@ -140,3 +140,9 @@ def test_options_are_those_of_the_verbs():
         except ValueError:  # a function of C++
             mine = set(re.findall(r"(\w+): ", function.__doc__.splitlines()[0]))
         assert mine > positional and mine - positional - {"callback"} <= options, verb
+
+
+def test_a_callback_is_told_of_frames_only():
+    seen = []
+    twincell.track(DEMO, cell=DEMO / "CELL.toml", frames="0:40", callback=lambda done, total: seen.append((done, total)))
+    assert seen and all(0 <= done <= total and total > 0 for done, total in seen), seen
