@@ -160,13 +160,13 @@ std::string as_text(const std::vector<analysis::Window>& windows, const std::vec
   return text + '\n';
 }
 
-/// Analyses a run in windows. The results go to a table, if one is requested.
 /// Notes a film whose drive is not the stated one: phases and heights of the plate are then wrong.
 void note_drive(const Common& common, const TrajectorySource& trajectory) {
   if (const auto said = calibration::recorded_disagreement(trajectory.info()); said && !said->empty())
     note(common, fmt::format("{}: the stated drive does not fit the film: {}.", trajectory.name(), *said));
 }
 
+/// Analyses a run in windows. The results go to a table, if one is requested.
 void run_windows(const Common& common, const AnalyzeOptions& options) {
   const auto refuse = [](const char* option, const char* why) {
     throw ConfigError({.file = {}, .key = option}, why);

@@ -30,7 +30,6 @@ struct ImportOptions {
   ForeignOptions foreign;
 };
 
-/// Notes on units and sizes that no file of beads is likely to have.
 /// Says which numbers the beads have now; empty if they keep those of the file.
 std::string new_numbers(const std::vector<std::int64_t>& ids) {
   if (ids.empty() || ids.back() == static_cast<std::int64_t>(ids.size()) - 1)
@@ -39,6 +38,7 @@ std::string new_numbers(const std::vector<std::int64_t>& ids) {
                      ids.back(), ids.size() - 1);
 }
 
+/// Notes on units and sizes that no file of beads is likely to have.
 void note_doubts(const Common& common, const ForeignTrajectory& source, double sigma) {
   constexpr double kClosest = 0.5, kFarthest = 3;  // sigma
   if (const double d = source.spacing(); std::isfinite(d) && (d < kClosest || d > kFarthest))

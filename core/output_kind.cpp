@@ -68,11 +68,12 @@ bool is_product(const std::filesystem::path& file, const Product& product) {
       return head == product.mark + "\n" || head == product.mark + "\r";
     }
     case Product::Sign::headings: {
+      const std::string head = head_of(file, 4096);
+      const std::size_t end = head.find_first_of("\r\n");
+      if (end == std::string::npos) return false;
       std::istringstream marks(product.mark);
-      for (std::string mark; std::getline(marks, mark);) {
-        const std::string head = head_of(file, mark.size() + 1);
-        if (head == mark + "\n" || head == mark + "\r") return true;
-      }
+      for (std::string mark; std::getline(marks, mark);)
+        if (head.compare(0, end, mark) == 0) return true;
       return false;
     }
     case Product::Sign::beginning:

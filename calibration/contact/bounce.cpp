@@ -604,7 +604,8 @@ void SeriesFit::add_mean(BounceFit& out, const Eigen::MatrixXd& covariance) cons
   WeightedMean mean = weighted_mean(e, covariance);
   const double chi2 = mean.chi2;
   constexpr double kGrown = 3;  // standard deviations of chi^2, which fluctuates for few impacts
-  if (freedom > 0 && chi2 > freedom + kGrown * std::sqrt(2 * freedom)) {
+  const bool scatters = freedom > 0 && chi2 > freedom + kGrown * std::sqrt(2 * freedom);
+  if (scatters) {
     constexpr int kHalvings = 60;
     const auto scattered = [&](double variance) {
       return weighted_mean(e, covariance + variance * Eigen::MatrixXd::Identity(n, n));
@@ -624,7 +625,7 @@ void SeriesFit::add_mean(BounceFit& out, const Eigen::MatrixXd& covariance) cons
         fmt::format("the drag is negative, {:.3g} +- {:.1g}: air does not push a bead; check times, "
                     "heights and the stated gravity",
                     out.drag, out.drag_error));
-  if (freedom > 0 && chi2 > freedom + kGrown * std::sqrt(2 * freedom))
+  if (scatters)
     out.notes.push_back(
         fmt::format("the impacts differ by more than the film's noise (chi^2 = {:.3g} of {:g}): e_n depends "
                     "on the impact, or the bead spins; the error contains this scatter",

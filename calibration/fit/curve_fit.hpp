@@ -76,8 +76,7 @@ struct CurveFit {
 /// A logarithmic law of frequencies that all have their trials is fitted by maximum likelihood instead, zeros
 /// included: y n counts of n trials with the probability exp(law), by iteratively reweighted least squares
 /// (McCullagh & Nelder 1989, chapter 2). With weights from the observed frequencies, and without the zeros,
-/// rare counts would be too high: E_b of 12 points with 1000 trials and E_b = 8 was 7.1. chi^2 is then
-/// Pearson's.
+/// rare counts would be too high. chi^2 is then Pearson's.
 ///
 /// A law that contains a simpler one (Law::nested) is compared with it by the reduction of the sum of squares
 /// (F test; chi^2 if weighted). If p > 0.05, its `lost` parameters are reported as undetermined, because data

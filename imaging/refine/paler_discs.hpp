@@ -14,8 +14,7 @@ namespace twincell::imaging {
 /// each other the first counts: a disc is often proposed twice. R is the radius of the candidate. Pure.
 ///
 /// \returns none if their darkness scatters by more than 12 % (from the median deviation), as of the holes of
-/// a
-///     perforated table or of clear beads of many levels
+///     a perforated table or of clear beads of many levels
 std::vector<Detection> paler_discs(const std::vector<Detection>& beads,
                                    const std::vector<Detection>& dropped);
 
