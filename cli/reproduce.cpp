@@ -7,7 +7,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -22,6 +21,7 @@
 #include "cli/sweep_watch.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
+#include "core/cpu_clock.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
 #include "core/output_rules.hpp"
@@ -119,16 +119,6 @@ struct Share {
   double seconds = 1e300;            ///< time limit
 };
 
-/// Processor time of the earlier calls in a folder, which this call resumes, core-minutes; nullopt if it has
-/// runs of a call that did not end, whose time is not recorded.
-std::optional<double> earlier_cost(const fs::path& folder, const Reproducible& what) {
-  const fs::path result = folder / (what.name + ".json");
-  if (!fs::exists(result)) return fs::exists(folder / "points") ? std::nullopt : std::optional(0.0);
-  const auto document = nlohmann::json::parse(read_text_file(result), nullptr, false);
-  if (!document.is_object() || !document.contains("core_minutes")) return std::nullopt;
-  return document["core_minutes"].get<double>();
-}
-
 /// Runs a figure, or judges its stored runs again, and writes its files into `folder`. \returns its document
 /// and text
 std::pair<nlohmann::json, std::string> make(const Reproducible& what, const ReproduceOptions& options,
@@ -145,9 +135,7 @@ std::pair<nlohmann::json, std::string> make(const Reproducible& what, const Repr
   }
   const Workers workers = what.on_device ? on_device : workers_of("", common);
   claim_shared_folder(folder, Product::runs());
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  double core_minutes = stored ? unknown : earlier_cost(folder, what).value_or(unknown);
-  const std::clock_t begin = std::clock();
+  const double begin = processor_seconds();
   SweepWatch watch(common, share.seconds);
   Reproduction r;
   try {
@@ -166,7 +154,7 @@ std::pair<nlohmann::json, std::string> make(const Reproducible& what, const Repr
     if (!stored) throw;
     throw InputError({from.string(), 0, 0, ""}, fmt::format("does not hold the runs of {}.", what.name));
   }
-  core_minutes += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC / 60;
+  double core_minutes = watch.runs_seconds().value_or(processor_seconds() - begin) / 60;
   if (stored) {
     // What was run is what the document says; its verdicts and figures alone are new.
     const auto keep = [&](const char* key, auto& member) {
@@ -176,7 +164,7 @@ std::pair<nlohmann::json, std::string> make(const Reproducible& what, const Repr
     keep("cheaper", r.cheaper);
     keep("complete", r.complete);
     keep("runs", r.runs);
-    core_minutes = stored->value("core_minutes", unknown);
+    core_minutes = stored->value("core_minutes", std::numeric_limits<double>::quiet_NaN());
   }
   for (Target& t : r.targets)
     if (t.runs.empty() && t.verdict != reproduce::Verdict::absent) t.runs = r.runs;

@@ -3,6 +3,7 @@
 /// Progress of a sweep, printed on stderr.
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 #include "cli/output.hpp"
@@ -20,11 +21,15 @@ class SweepWatch : public sweep::Watch {
   ~SweepWatch() override;
   void look(const sweep::Counts& counts, double seconds_left) override;
   [[nodiscard]] double time_left() const override;
+  void cost(double processor_seconds) override { runs_ = runs_.value_or(0) + processor_seconds; }
+  /// Processor time of the runs of all sweeps so far, s; NaN if one is unknown, nullopt without a sweep.
+  [[nodiscard]] std::optional<double> runs_seconds() const { return runs_; }
 
  private:
   bool quiet_, terminal_;
   ProgressBar signals_;
   double seconds_;
+  std::optional<double> runs_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::string last_;
   EveryMinute due_;

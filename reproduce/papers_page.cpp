@@ -65,12 +65,11 @@ std::string papers_page(const std::vector<Document>& documents, const std::strin
       "One rule gives every verdict. It compares the 95 % interval of the measured value with the target:\n\n"
       "| verdict | meaning |\n|---|---|\n";
   for (const auto& verdict : kVerdicts) s += fmt::format("| {} | {} |\n", verdict.word, verdict.help);
-  s +=
-      "\nStatements about an order use the interval of the difference. A statement about a count or about "
-      "bits has no interval.\nEach target is counted once: entries that judge the targets of other figures "
-      "again, under other assumptions, are not in\nthe sum. The cost is the processor time of the calls that "
-      "filled the folder of the figure; \"–\" means that it was not\nrecorded. Figures that share runs "
-      "count them once, with the figure that computed them.\n\n## Summary\n\n| |";
+  s += "\nStatements about an order use the interval of the difference. A statement about a count or about "
+       "bits has no interval.\nEach target is counted once: entries that judge the targets of other figures "
+       "again, under other assumptions, are not in\nthe sum. The cost is the processor time of the runs that "
+       "the figure uses; \"–\" means that it was not recorded.\nFigures that share runs each state it "
+       "in whole.\n\n## Summary\n\n| |";
   for (const auto& verdict : kVerdicts) s += fmt::format(" {} |", verdict.word);
   s += " core-minutes |\n|---|";
   for (std::size_t k = 0; k <= kVerdicts.size(); ++k) s += "---|";

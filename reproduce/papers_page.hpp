@@ -16,8 +16,8 @@ struct Document {
 
 /// The page as Markdown: a table of the verdicts per figure, and for each figure a table with the paper's
 /// statement, the measured value with its 95 % interval, the runs behind it, the verdict, and what decides
-/// it. The cost of a figure is the processor time of the calls that filled its folder; figures without a
-/// recorded cost have none. \param command the command that made the page, for its first paragraph \throws
+/// it. The cost of a figure is the processor time of its runs; figures without a recorded
+/// cost have none. \param command the command that made the page, for its first paragraph \throws
 /// nlohmann::json::exception for a text that is not such a document
 std::string papers_page(const std::vector<Document>& documents, const std::string& command);
 

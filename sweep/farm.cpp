@@ -11,6 +11,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <thread>
 #include <utility>
 
@@ -198,6 +199,16 @@ class Farm {
   std::exception_ptr error_;
 };
 
+/// Processor time of the results of schedules, s; NaN if one does not state it.
+double processor_seconds_of(const std::vector<Schedule*>& schedules) {
+  double sum = 0;
+  for (const Schedule* schedule : schedules)
+    for (const Curve& curve : schedule->curves())
+      for (const auto& result : curve.results)
+        if (result) sum += nlohmann::json::parse(*result)["computed"].value("processor_seconds", kUnknown);
+  return sum;
+}
+
 }  // namespace
 
 void require_memory_together(const Schedule& schedule, int together, const std::string& way,
@@ -249,7 +260,9 @@ void require_memory_together(const Schedule& schedule, int together, const std::
 
 bool run_here(const std::vector<Schedule*>& schedules, const Store& store, const FarmOptions& options,
               Watch& watch) {
-  return Farm(schedules, store, options, watch).run();
+  const bool all = Farm(schedules, store, options, watch).run();
+  watch.cost(processor_seconds_of(schedules));
+  return all;
 }
 
 }  // namespace twincell::sweep

@@ -21,6 +21,9 @@ class Watch {
   virtual void look(const Counts& /*counts*/, double /*seconds_left*/) {}
   /// Remaining time in seconds; points that would take longer are not started.
   [[nodiscard]] virtual double time_left() const { return 1e300; }
+  /// Receives, when run_here ends, the processor time of all results of its schedules, those of earlier calls
+  /// included, in seconds; NaN if a result does not state it.
+  virtual void cost(double /*processor_seconds*/) {}
 };
 
 /// Options of run_here.

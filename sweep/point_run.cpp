@@ -11,6 +11,7 @@
 
 #include "analysis/observable/observable.hpp"
 #include "analysis/observable/results.hpp"
+#include "core/cpu_clock.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
 #include "core/provenance.hpp"
@@ -91,6 +92,7 @@ double asked_of(const Plan& plan, const std::vector<analysis::Result>& results) 
 std::string run_point(const Plan& plan, const Point& point, const std::filesystem::path& trajectory,
                       Progress& progress, StageTimes* times, sim::SolverKind solver) {
   const auto begin = std::chrono::steady_clock::now();
+  const double cpu_begin = cpu_seconds();
   nlohmann::json document = {{"id", point.id}, {"answer", nullptr}};
   std::int64_t cycles = 0;
   try {
@@ -146,6 +148,7 @@ std::string run_point(const Plan& plan, const Point& point, const std::filesyste
   document["computed"] = {
       {"seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()},
       {"program", version_line()}};
+  if (solver != sim::SolverKind::gpu) document["computed"]["processor_seconds"] = cpu_seconds() - cpu_begin;
   for (const char* key : {"date", "time", "utc", "cpu", "processor"})
     if (program.contains(key)) document["computed"][key] = program[key];
   return json_text(document) + "\n";

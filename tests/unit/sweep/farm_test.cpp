@@ -5,7 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
+#include "core/atomic_file.hpp"
 #include "sweep/plan.hpp"
 #include "sweep/store.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -22,6 +26,8 @@ class Limited : public Watch {
   [[nodiscard]] double elapsed() const {
     return std::chrono::duration<double>(Clock::now() - begin_).count();
   }
+  void cost(double seconds) override { processor_seconds = seconds; }
+  double processor_seconds = 0;
 
  private:
   double seconds_;
@@ -62,6 +68,44 @@ TEST(Farm, PointsInTimeAreDone) {
   Limited watch(60);
   EXPECT_TRUE(run_here({&schedule}, store, {.threads = 2}, watch));
   EXPECT_EQ(schedule.counts().done, 3U);
+}
+
+// What a figure cost stands in its runs, so that a call that was killed, or that continued another one, does
+// not change it.
+TEST(Farm, CostIsTheProcessorTimeOfAllResults) {
+  const TemporaryFolder folder;
+  const Store store(folder / "runs");
+  const Plan one = plan_of("2"), three = plan_of("2, 3, 4");
+  Schedule first(one, store);
+  Limited watch(60);
+  run_here({&first}, store, {.threads = 1}, watch);
+  EXPECT_GT(watch.processor_seconds, 0);
+  EXPECT_LT(watch.processor_seconds, 60);
+  Schedule all(three, store);
+  Limited second(60);
+  run_here({&all}, store, {.threads = 2}, second);
+  double sum = 0;
+  for (const Curve& curve : all.curves())
+    for (const auto& result : curve.results)
+      sum += nlohmann::json::parse(*result)["computed"]["processor_seconds"].get<double>();
+  EXPECT_NEAR(second.processor_seconds, sum, 1e-9);
+  EXPECT_GT(sum, watch.processor_seconds) << "the result of the first call is missing";
+}
+
+TEST(Farm, CostIsUnknownWhereAResultDoesNotStateIt) {
+  const TemporaryFolder folder;
+  const Store store(folder / "runs");
+  const Plan plan = plan_of("2");
+  Schedule schedule(plan, store);
+  Limited watch(60);
+  run_here({&schedule}, store, {.threads = 1}, watch);
+  const auto file = store.folder() / "points" / schedule.curves().front().points.front().id / "result.json";
+  nlohmann::json result = nlohmann::json::parse(read_text_file(file));
+  result["computed"].erase("processor_seconds");
+  std::ofstream(file) << result.dump() << "\n";
+  Schedule again(plan, store);
+  EXPECT_TRUE(run_here({&again}, store, {.threads = 1}, watch));
+  EXPECT_TRUE(std::isnan(watch.processor_seconds));
 }
 
 }  // namespace
