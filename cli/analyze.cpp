@@ -166,6 +166,30 @@ void note_drive(const Common& common, const TrajectorySource& trajectory) {
     note(common, fmt::format("{}: the stated drive does not fit the film: {}.", trajectory.name(), *said));
 }
 
+/// Notes beads whose diameter is not sigma, with which the default cutoff does not find the neighbours.
+void note_cutoff(const Common& common, const TrajectorySource& trajectory,
+                 const analysis::AnalysisOptions& options) {
+  const std::vector<double>& radius = trajectory.info().radius;
+  if (options.neighbour_cutoff || options.neighbours != analysis::NeighbourRule::cutoff || radius.empty())
+    return;
+  double sum = 0;
+  std::size_t n = 0;
+  for (const double r : radius)
+    if (std::isfinite(r)) {
+      sum += 2 * r;
+      ++n;
+    }
+  constexpr double kLeast = 0.05;  // sizes of measured beads differ from sigma by a few percent
+  const double diameter = n > 0 ? sum / static_cast<double>(n) : 1;
+  if (std::abs(diameter - 1) <= kLeast) return;
+  const double cutoff = analysis::neighbour_cutoff(trajectory.info(), options);
+  note(common,
+       fmt::format(
+           "{}: the beads have a mean diameter of {:.3g} sigma, and neighbours are beads within {:g} sigma; "
+           "results of order, defects and slip need --cutoff {:.3g}.",
+           trajectory.name(), diameter, cutoff, cutoff * diameter));
+}
+
 /// Analyses a run in windows. The results go to a table, if one is requested.
 void run_windows(const Common& common, const AnalyzeOptions& options) {
   const auto refuse = [](const char* option, const char* why) {
@@ -179,6 +203,7 @@ void run_windows(const Common& common, const AnalyzeOptions& options) {
            "is the results of a whole run; with --window-cycles, use --table FILE.csv or --json.");
   const H5mdReader trajectory(options.trajectories.front());
   note_drive(common, trajectory);
+  note_cutoff(common, trajectory, options.analysis);
   std::vector<analysis::Window> windows;
   std::vector<analysis::CycleRange> left_out;
   {
@@ -220,7 +245,10 @@ void run(const Common& common, const AnalyzeOptions& options) {
       throw InputError({.file = file, .key = {}}, "the trajectory contains no frame");
   }
   analysis::require_one_condition(trajectories);
-  for (const TrajectorySource* trajectory : trajectories) note_drive(common, *trajectory);
+  for (const TrajectorySource* trajectory : trajectories) {
+    note_drive(common, *trajectory);
+    note_cutoff(common, *trajectory, options.analysis);
+  }
   if (readers.size() > 1 && !options.figures.empty())
     throw ConfigError({.file = {}, .key = "--figures"},
                       fmt::format("draws one trajectory; {} were given", readers.size()));

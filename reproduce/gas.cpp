@@ -337,8 +337,8 @@ std::vector<std::string> Gas::conditions() const {
                   discard_least == discard_most ? fmt::format("{}", discard_most)
                                                 : fmt::format("{} to {}", discard_least, discard_most)),
       "T_z = m <w'^2> about the centre of mass of the instant, mean over beads and 20 phases a cycle",
-      "errors: 95 % intervals from overlapping blocks, each at least five correlation times (tau, which the "
-      "table states in cycles) and an eighth of the run long"};
+      "errors: 95 % intervals of series correlated over tau, which the table states in cycles "
+      "(docs/statistics.md)"};
 }
 
 std::vector<std::string> Gas::cheaper() const {

@@ -17,6 +17,7 @@
 #include "analysis/statistics/statistics.hpp"
 #include "core/counted.hpp"
 #include "core/json_text.hpp"
+#include "reproduce/alternatives.hpp"
 #include "reproduce/p1_scene.hpp"
 
 namespace twincell::reproduce {
@@ -353,42 +354,28 @@ std::string json_of(const StrengthSweeps& sweeps) {
   return json_text(all);
 }
 
-bool met(const Target& t) {
-  return t.verdict == Verdict::pass || t.verdict == Verdict::consistent;
+/// The targets of a figure at each height.
+std::vector<Alternative> at_heights(const StrengthSweeps& sweeps,
+                                    std::vector<Target> (*targets_at)(const HeightSweeps&)) {
+  std::vector<Alternative> all;
+  for (const HeightSweeps& height : sweeps.heights)
+    all.push_back({fmt::format("N_l = {}", height.layers), targets_at(height)});
+  return all;
 }
 
 }  // namespace
 
 std::size_t counted_height(const StrengthSweeps& sweeps) {
-  // Met and failed targets of both figures; more of the first and fewer of the second are better.
-  const auto merit = [](const HeightSweeps& height) {
-    std::ptrdiff_t good = 0, bad = 0;
-    for (const auto& targets : {temperature_targets(height), slip_targets(height)}) {
-      good += std::count_if(targets.begin(), targets.end(), met);
-      bad += std::count_if(targets.begin(), targets.end(),
-                           [](const Target& t) { return t.verdict == Verdict::fail; });
-    }
-    return std::pair(good, -bad);
-  };
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < sweeps.heights.size(); ++i)
-    if (merit(sweeps.heights[i]) > merit(sweeps.heights[best])) best = i;
-  return best;
+  std::vector<Alternative> both = at_heights(sweeps, temperature_targets);
+  const std::vector<Alternative> of_slips = at_heights(sweeps, slip_targets);
+  for (std::size_t i = 0; i < both.size(); ++i)
+    both[i].targets.insert(both[i].targets.end(), of_slips[i].targets.begin(), of_slips[i].targets.end());
+  return meets_most(both);
 }
 
 std::vector<Target> targets_at_heights(const StrengthSweeps& sweeps,
                                        std::vector<Target> (*targets_at)(const HeightSweeps&)) {
-  std::vector<Target> targets = targets_at(sweeps.heights[counted_height(sweeps)]);
-  if (sweeps.heights.size() == 1) return targets;
-  for (Target& t : targets) t.measured.clear();
-  for (const HeightSweeps& height : sweeps.heights) {
-    const std::vector<Target> here = targets_at(height);
-    for (std::size_t k = 0; k < targets.size(); ++k)
-      targets[k].measured +=
-          fmt::format("{}N_l = {}: {}{}", targets[k].measured.empty() ? "" : "; ", height.layers,
-                      here[k].measured.empty() ? "" : here[k].measured + ", ", word_of(here[k].verdict));
-  }
-  return targets;
+  return stating_all(at_heights(sweeps, targets_at), counted_height(sweeps));
 }
 
 Reproduction reproduction_of(const StrengthSweeps& sweeps, const std::string& title) {

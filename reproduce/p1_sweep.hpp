@@ -17,7 +17,7 @@ inline constexpr const char* kStrengthSweepRuns = "p1-strength-sweep";
 /// All runs at one drive strength.
 struct SweepPoint {
   double gamma = 0;
-  std::vector<Estimate> temperature;  ///< T_g* of each run, by block averages over cycles
+  std::vector<Estimate> temperature;  ///< T_g* of each run, as a correlated series over cycles
   std::vector<double> p_s_of_runs;    ///< p_s of each run with eligible beads; empty in documents before it
   double slips = 0, eligible = 0;     ///< over all runs: slips, and bead-periods counted
   std::size_t runs = 0, bouncing = 0, convecting = 0;

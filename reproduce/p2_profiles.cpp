@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string_view>
 
+#include "reproduce/alternatives.hpp"
 #include "reproduce/gas.hpp"
 
 namespace twincell::reproduce {
@@ -37,24 +38,17 @@ std::string title_of(const std::string& what, const Reading& reading) {
   return what + "\n{/*0.85 T_z(z): " + reading.drawn + "}";
 }
 
-/// The targets in the better of two readings: the one with more pass and consistent, then with fewer fail.
+/// The targets in the reading that meets most of them; the reason states the other.
 std::vector<Target> better_of(const std::vector<Target>& a, const std::vector<Target>& b) {
-  const auto score = [](const std::vector<Target>& targets) {
-    int good = 0, bad = 0;
-    for (const Target& t : targets) {
-      good += t.verdict == Verdict::pass || t.verdict == Verdict::consistent ? 1 : 0;
-      bad += t.verdict == Verdict::fail ? 1 : 0;
-    }
-    return std::pair(good, -bad);
-  };
-  const bool second = score(b) > score(a);
-  std::vector<Target> best = second ? b : a;
-  const std::vector<Target>& other = second ? a : b;
+  const std::vector<Alternative> all = {{kReadings[0].name, a}, {kReadings[1].name, b}};
+  const std::size_t counted = meets_most(all);
+  std::vector<Target> best = all[counted].targets;
+  const Alternative& other = all[1 - counted];
   for (std::size_t k = 0; k < best.size(); ++k) {
     if (best[k].verdict == Verdict::absent) continue;
-    best[k].reason += fmt::format("{}reading: {}; {}: {}, {}", best[k].reason.empty() ? "" : "; ",
-                                  kReadings[second ? 1 : 0].name, kReadings[second ? 0 : 1].name,
-                                  word_of(other[k].verdict), other[k].measured);
+    best[k].reason +=
+        fmt::format("{}reading: {}; {}: {}, {}", best[k].reason.empty() ? "" : "; ", all[counted].name,
+                    other.name, word_of(other.targets[k].verdict), other.targets[k].measured);
   }
   return best;
 }

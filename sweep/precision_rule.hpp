@@ -14,8 +14,8 @@ namespace twincell::sweep {
 
 /// Follows the scene's `until.quantity` frame by frame. The run ends once half of the 95 % interval of its
 /// mean is at most the larger of until.relative_error times the mean and until.absolute_error. The interval
-/// is that of `analyze`: means of whole cycles, overlapping blocks (BlockAverage); five blocks of five
-/// correlation times each must fit into the run.
+/// is that of `analyze`: means of whole cycles as a correlated series (BlockAverage); the run must hold
+/// eight correlation times.
 ///
 /// The first check is after 100 cycles and after forty flights of a bead thrown at V_p into an open cell (2
 /// V_p/g each), because a shorter gas run does not show how slowly its height fluctuates. Further checks

@@ -51,7 +51,7 @@ TAIL = """
 | neighbour search by cells | all pairs and images, size ratio 1 : 100; the number of candidates per bead is independent of the number of beads | `unit.CellGrid.*` |
 | every solver, law, dimension and integrator; neighbour lists built at every step or never (V2.14) | each other and the all-pairs oracle, bit for bit | `agreement.*` |
 | fits | exact data; NIST's certified problems; coverage of the 95 % intervals | `recovery.*Fit*`, `recovery.Nist.*` |
-| block averages, bootstraps, binomial intervals | coverage over synthetic processes with known truth | `unit.Statistics.*` |
+| correlated series, bootstraps, binomial intervals | coverage over synthetic processes with known truth | `unit.Statistics.*` |
 | locator on synthetic frames | recall and precision 1; rms error against the Cramér–Rao bound | `tests/recovery/imaging/locator_test.cpp` |
 | locator and linker on real frames | published centres and identities (Lafaye de Micheaux et al. 2018) | `tests/recovery/imaging/real_images_test.cpp` |
 | camera → tracker → trajectory | the trajectory that was filmed | `tests/recovery/imaging/closed_loop_test.cpp` |

@@ -13,7 +13,7 @@ inline constexpr double kForceWidth = 0.1;  ///< width of a bin
 /// contacts between beads. f_n is the normal force of a contact, f_t the modulus of its tangential force, <.>
 /// the mean over the contacts of a frame.
 ///
-/// - contact_force: <f_n>, mean over frames, m g; 95 % interval from block averages
+/// - contact_force: <f_n>, mean over frames, m g; 95 % interval of a correlated series
 /// - tangential_to_normal: <f_t>/<f_n>, mean over frames weighted by <f_n>; same
 /// - contact_force_density: [bins] probability density of f_n/<f_n>, in bins of 0.1 up to 8, mean over frames
 /// - contact_force_density_low, contact_force_density_high: [bins] ends of its 95 % interval

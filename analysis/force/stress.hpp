@@ -17,7 +17,7 @@ inline constexpr double kStressSlab = 1;  ///< sigma, thickness of a slab of the
 /// f is the force on bead i, l the branch vector: from the centre of j to that of i, (R_i + R_j - overlap) n,
 /// or from the wall to the centre of i, (R_i - overlap) n. v' is relative to the mean velocity of the frame.
 /// V is the area (3D: volume) of the bed's window (bed_window.hpp) with a margin of half a bead diameter; in
-/// a box periodic on all sides it is that of the box. Means over frames; 95 % intervals from block averages.
+/// a box periodic on all sides it is that of the box. Means over frames; 95 % intervals of correlated series.
 ///
 /// The profile is the stress coarse-grained with a box function (Goldhirsch 2010): the part of each branch
 /// vector that lies in a horizontal slab of thickness sigma counts for this slab, whose width (and depth) is

@@ -226,13 +226,16 @@ class GranularTemperature : public Observable {
     const BlockAverage& average = z.average();
     const double tau = average.correlation_time();
     if (!std::isfinite(tau))
-      return absent_result("T_z_tau", "a single value has no correlation time", kPaper2);
+      return absent_result("T_z_tau",
+                           average.n() < 2 ? "a single value has no correlation time"
+                                           : "T_z drifts: its correlation does not end",
+                           kPaper2);
     Result r{.name = "T_z_tau", .values = {tau}, .unit = z.of_what(), .n = average.n(), .n_of = z.of_what()};
     r.no_interval = "the intervals of the means are themselves based on it";
     r.convention =
-        "integrated correlation time of T_z, 1/2 + sum of rho_k; the error bar uses blocks of five such "
-        "times";
-    r.source = "Sokal 1997; Wolff 2004";
+        "integrated correlation time of T_z, 1/2 + sum of rho_k of the autoregressive process that describes "
+        "it";
+    r.source = "Burg 1975";
     return r;
   }
 

@@ -28,7 +28,7 @@ double granular_temperature(const Frame& frame, const std::vector<double>& mass)
 /// - T_g_sampling: relative excess of the time mean from every second sample over the time mean from all
 ///
 /// The means are over time if the frames contain time means (Frame::time_mean). Otherwise they are over the
-/// frames of whole cycles, so that all phases have the same weight, with block averages over cycles; if the
+/// frames of whole cycles, so that all phases have the same weight, as correlated series over cycles; if the
 /// frames are not locked to the drive, they are over all frames. T_z_field always uses frames. All results
 /// are absent for a trajectory without velocities: a difference between frames is a different quantity (it
 /// averages over the time between them) and does not replace the velocity.

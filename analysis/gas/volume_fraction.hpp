@@ -13,7 +13,7 @@ namespace twincell::analysis {
 /// - phi_cm: up to twice the height of the centre of mass
 ///
 /// Bhateja, Sharma & Singh 2016, sec. IV, give "about 0.2 at W_f" without a convention. The interval is from
-/// block averages over frames. A result is absent if no frame contains beads, or if the beads of any frame
+/// correlated series over frames. A result is absent if no frame contains beads, or if the beads of any frame
 /// need more volume than there is below the top (a bed that moves down with the plate).
 extern const ObservableEntry volume_fraction_observable;
 

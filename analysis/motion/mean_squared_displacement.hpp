@@ -17,7 +17,7 @@ inline constexpr std::size_t kLongestLag = 32;  ///< cycles
 /// its value at one cycle. At equal phase, the motion with the plate cancels. Results:
 ///
 /// - msd: [lags] sigma^2, for m = 1, 2 ... 32; NaN where no pair of cycles is that far apart
-/// - msd_low, msd_high: [lags] ends of its 95 % interval, from block averages over j; the displacements of
+/// - msd_low, msd_high: [lags] ends of its 95 % interval, as a correlated series over j; the displacements of
 ///   overlapping pairs of cycles are correlated, so that a lag of m cycles needs a series of about 40 m
 ///   cycles (NaN before)
 /// - msd_lag: [lags] m, cycles

@@ -383,9 +383,9 @@ class PhaseThresholds : public Observable {
     all.push_back(std::move(onset));
   }
 
-  /// Interval of s_c by block averages over cycles if s_j is stationary. The motion of a line that drifts or
-  /// comes to rest is a single event, not a stationary series; the interval is then from the scatter between
-  /// tracers.
+  /// Interval of s_c as a correlated series over cycles if s_j is stationary. The motion of a line that
+  /// drifts or comes to rest is a single event, not a stationary series; the interval is then from the
+  /// scatter between tracers.
   [[nodiscard]] std::optional<Interval> interval_of_s_c(const BlockAverage& squares) const {
     auto interval = squares.interval("cycles");
     if (!interval) {

@@ -58,7 +58,8 @@ double s_b_of(const std::vector<double>& s_k, SbForm form, double rest_height);
 /// - s_j_noise: scalar, contribution of the position uncertainties to s_j, added in quadrature
 /// - s_j: [cycles] spread of the tracers' heights at the beginning of each cycle (B1); NaN for a cycle
 ///   without a value
-/// - s_c: scalar, root mean square of s_j (B2); 95 % interval by block averages of s_j^2 over cycles, or by
+/// - s_c: scalar, root mean square of s_j (B2); 95 % interval as a correlated series of s_j^2 over cycles, or
+/// by
 ///   bootstrap over tracers if s_j drifts
 /// - cycle_of_convection: scalar, first cycle with s_j > sigma
 /// - s_j_growth, s_j_growth_late: scalars, d s_j^2/dj over all cycles and over the second half

@@ -18,7 +18,7 @@ inline constexpr std::size_t kLongestVelocityLag = 32;  ///< frames
 /// are multiples of the time between the first two frames; frames at other times do not count. Results:
 ///
 /// - vacf: [lags] C, for lags of 0 to 32 frames; NaN where no frames are that far apart
-/// - vacf_low, vacf_high: [lags] ends of its 95 % interval, from block averages over frames; NaN at lag 0,
+/// - vacf_low, vacf_high: [lags] ends of its 95 % interval, as a correlated series over frames; NaN at lag 0,
 ///   where C = 1 by definition
 /// - vacf_lag: [lags] t, t0
 ///

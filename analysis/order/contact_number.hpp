@@ -22,7 +22,7 @@ inline constexpr double kContactReach = 1.05;
 /// - contact_number_inside: mean over beads with an enclosed Voronoi cell (voronoi.hpp), which excludes
 ///   surface beads; planar beds only
 ///
-/// Intervals: block averages over frames. C. Thornton, Geotechnique 50 (2000) 43.
+/// Intervals: those of correlated series over frames. C. Thornton, Geotechnique 50 (2000) 43.
 extern const ObservableEntry contact_number_observable;
 
 }  // namespace twincell::analysis

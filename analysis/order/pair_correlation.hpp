@@ -21,7 +21,7 @@ inline constexpr double kPairCorrelationWidth = 0.05;  ///< sigma, width of a bi
 /// area (volume), in each frame. Results:
 ///
 /// - g_r: [bins] mean over frames with reference beads; NaN in bins that no frame has
-/// - g_r_low, g_r_high: [bins] ends of its 95 % interval, from block averages over frames
+/// - g_r_low, g_r_high: [bins] ends of its 95 % interval, as a correlated series over frames
 /// - g_r_distance: [bins] centres of the bins, sigma
 /// - g_peak: scalar, the largest g(r)
 /// - g_peak_distance: scalar, centre of its bin, sigma

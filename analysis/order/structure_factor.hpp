@@ -25,7 +25,7 @@ inline constexpr double kStructureFactorWidth = 0.2;  ///< 1/sigma, width of a b
 /// axis shorter than 2 sigma has q_a = 0 only. Results:
 ///
 /// - S_q: [bins] up to 16/sigma in bins of 0.2/sigma; NaN in bins without wave vectors
-/// - S_q_low, S_q_high: [bins] ends of its 95 % interval, from block averages over frames
+/// - S_q_low, S_q_high: [bins] ends of its 95 % interval, as a correlated series over frames
 /// - S_q_wavenumber: [bins] centres of the bins, 1/sigma
 /// - S_q_peak: scalar, the largest S_q
 /// - S_q_peak_wavenumber: scalar, mean |q| of the wave vectors of its bin weighted by their S, 1/sigma

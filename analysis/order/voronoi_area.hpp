@@ -18,7 +18,7 @@ inline constexpr double kVoronoiAreaWidth = 0.05;  ///< width of a bin
 /// number of beads if all cells are enclosed. A bead at a surface has no area, so that a gas more dilute than
 /// the limit of the cells' radius has few. Results:
 ///
-/// - voronoi_area: mean, sigma^2; 95 % interval from block averages over frames
+/// - voronoi_area: mean, sigma^2; 95 % interval as a correlated series over frames
 /// - voronoi_area_variance: variance within a frame, sum (A - <A>)^2/(n - 1), mean over frames, sigma^4; same
 /// - voronoi_area_density: [bins] probability density of A over the mean of its frame, up to 3 in bins of
 /// 0.05

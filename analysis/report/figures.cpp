@@ -523,7 +523,7 @@ Figure thresholds_figure(const std::vector<Run>& runs) {
   f.caption =
       "Top: s_b, the variation of the bed's height above the plate through a cycle; above σ/30 the bed "
       "bounces. Bottom: s_c, the deformation of the tracer line; above σ the bed convects. Bars: 95 % "
-      "intervals (s_b by bootstrap over tracers, s_c by block averages over cycles). "
+      "intervals (s_b by bootstrap over tracers, s_c as a correlated series over cycles). "
       "Values below 10⁻⁴ are drawn at 10⁻⁴.";
   return f;
 }

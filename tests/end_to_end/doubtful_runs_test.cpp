@@ -56,6 +56,19 @@ TEST_F(DoubtfulRuns, OtherGravityOrWallsAreNotPooled) {
   EXPECT_NE(windows.out.find("0.75 to 1.5"), std::string::npos) << windows.out << windows.err;
 }
 
+// The default cutoff is in sigma, the beads of this scene are larger: a crystal has no neighbours at all.
+TEST_F(DoubtfulRuns, BeadsThatAreNotOfDiameterSigmaNeedAnotherCutoff) {
+  ASSERT_EQ(simulate("large.h5", {"beads.diameter_sigma=1.5", "cell.width_sigma=9.0"}).code, 0);
+  const Ran with_default = run_program({"analyze", folder_ / "large.h5", "--only", "q6"});
+  EXPECT_NE(with_default.err.find("mean diameter of 1.5 sigma"), std::string::npos) << with_default.err;
+  EXPECT_NE(with_default.err.find("--cutoff 1.8"), std::string::npos) << with_default.err;
+  const Ran with_cutoff = run_program({"analyze", folder_ / "large.h5", "--only", "q6", "--cutoff", "1.8"});
+  EXPECT_EQ(with_cutoff.err.find("cutoff"), std::string::npos) << with_cutoff.err;
+  ASSERT_EQ(simulate("usual.h5", {}).code, 0);
+  const Ran usual = run_program({"analyze", folder_ / "usual.h5", "--only", "q6"});
+  EXPECT_EQ(usual.err.find("cutoff"), std::string::npos) << usual.err;
+}
+
 // Other seeds of one scene differ; one simulation does not tell by how much.
 TEST_F(DoubtfulRuns, ComparisonsSayWhatTheyDoNotKnow) {
   const std::vector<std::string> shaken = {"drive.gamma=1.6", "start.kind=\"random\"", "time.cycles=40"};

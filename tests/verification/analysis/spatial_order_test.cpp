@@ -230,7 +230,7 @@ TEST(Orientation, CrystalsAAndB) {
 TEST(Orientation, FramesOnBothSidesOfTheSeamKeepTheirMean) {
   for (const double first : {44.9, 45.1}) {
     std::vector<Frame> frames;
-    for (const double degrees : {first, 45.1, 44.9, 45.1, 44.9, 45.1, 44.9, 90 - first}) {
+    for (const double degrees : {first, 45.1, 44.9, 44.9, 45.1, 45.1, 44.9, 90 - first}) {
       std::vector<Vec3> beads = lattice(degrees, 0, 20, 0, 20);
       beads.resize(380);
       frames.push_back(frame_of(beads));
