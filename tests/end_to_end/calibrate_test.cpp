@@ -370,6 +370,21 @@ TEST(Calibrate, TheWrongPolarityGivesNoWalls) {
   }
 }
 
+// The width that `new` writes is the distance of the walls in px over the diameter in px.
+TEST(Calibrate, ScalesThatAreNotIndependentAreNamed) {
+  const TemporaryFolder folder;
+  film(folder, {.pixels_per_sigma = 12});
+  const auto dependent = [&](const std::string& cell) {
+    put_file(folder / "cell.toml", cell);
+    return run_json({"calibrate", "camera", folder / "frames", "--cell", folder / "cell.toml"})["notes"]
+               .dump()
+               .find("the two scales are independent only if") != std::string::npos;
+  };
+  EXPECT_TRUE(dependent("[camera]\npixels_per_sigma = 12.0\n[cell]\nwidth = 12.0\n"));
+  EXPECT_FALSE(dependent("[camera]\npixels_per_sigma = 12.0\n[cell]\nwidth = 12.2\n"));
+  EXPECT_FALSE(dependent("[cell]\nwidth = 12.0\n"));
+}
+
 TEST(Calibrate, SaysWhatIsWrongAndLeavesNothing) {
   const TemporaryFolder folder;
   EXPECT_EQ(run_program({"calibrate"}).code, 2);
