@@ -137,6 +137,30 @@ TEST(Track, TracersThatAreLeftOutAreNoted) {
   EXPECT_NE(profile.err.find("paler discs in a frame were left out"), std::string::npos) << profile.err;
 }
 
+// Without the frames per cycle a film has no phases; the note says what gives them.
+TEST(Track, WithoutFramesPerCycleItIsSaidWhatGivesPhases) {
+  const TemporaryFolder folder;
+  const std::string demo = TWINCELL_SOURCE_DIR "/data_samples/demo/gamma-1.6";
+  const auto said = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"track", demo, "-o", folder / "t.h5", "--force", "--frames", "0:20"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Ran ran = run_program(words);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return ran.err;
+  };
+  const std::string missing = "the frames per cycle are not stated", none = "leaves out the phases",
+                    drive = "the drive is not stated";
+  const std::string plain = said({"--drive-gamma", "1.6", "--drive-amplitude", "1.6"});
+  for (const std::string& word : {missing, std::string("--phase-lock N"), std::string("--phase-lock found"),
+                                  std::string("calibrate plate --phases LIST.csv")})
+    EXPECT_NE(plain.find(word), std::string::npos) << plain;
+  const std::string chosen = said({"--phase-lock", "none"}), locked = said({"--phase-lock", "20"});
+  EXPECT_NE(chosen.find(none), std::string::npos) << chosen;
+  EXPECT_EQ(chosen.find(missing), std::string::npos) << chosen;
+  EXPECT_NE(locked.find(drive), std::string::npos) << locked;
+  EXPECT_EQ(said({"--cell", demo + "/CELL.toml"}).find("is absent"), std::string::npos);
+}
+
 // The first two cycles of a shipped film, whose plate is at row 186.2.
 class DemoFilm : public ::testing::Test {
  protected:
