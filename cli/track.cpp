@@ -173,8 +173,8 @@ void run(TrackOptions& o, const Common& common) {
     note(common,
          "the stated drive does not fit the film: " + film.check.disagreement + " (--trust-stated-drive).");
   if (!stack.phases.warning.empty()) note(common, stack.phases.warning + ".");
-  for (const std::string& doubt :
-       {stack.missing_beads(), stack.paler_doubt(), stack.surplus_tracks(), stack.scale_doubt(cell)})
+  for (const std::string& doubt : {stack.missing_beads(), stack.paler_doubt(), stack.surplus_tracks(),
+                                   stack.scale_doubt(cell), stack.still_discs()})
     if (!doubt.empty()) note(common, doubt + ".");
   // Write the trajectory, then the table.
   Provenance provenance = common.provenance();

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -135,6 +137,31 @@ TEST(Track, TracersThatAreLeftOutAreNoted) {
   const Ran profile = run_program(words);
   ASSERT_EQ(profile.code, 0) << profile.err;
   EXPECT_NE(profile.err.find("paler discs in a frame were left out"), std::string::npos) << profile.err;
+}
+
+// A bubble on the window, as wide as a bead, above a bed that bounces.
+TEST(Track, ADiscThatStandsStillInAMovingBedIsNamed) {
+  const TemporaryFolder folder;
+  const std::filesystem::path demo = TWINCELL_SOURCE_DIR "/data_samples/demo/gamma-1.6",
+                              stack = folder / "stack";
+  std::filesystem::create_directory(stack);
+  for (const bool bubble : {false, true}) {
+    for (int f = 0; f < 40; ++f) {
+      const std::string name = fmt::format("frame_{:05}.png", f);
+      cv::Mat frame = cv::imread((demo / name).string(), cv::IMREAD_GRAYSCALE);
+      if (bubble) {
+        cv::circle(frame, {80, 30}, 6, 20, -1, cv::LINE_AA);
+        cv::GaussianBlur(frame(cv::Rect(65, 15, 31, 31)), frame(cv::Rect(65, 15, 31, 31)), {0, 0}, 0.7);
+      }
+      cv::imwrite((stack / name).string(), frame);
+    }
+    const Ran ran = run_program(
+        {"track", stack, "-o", folder / "t.h5", "--cell", demo / "CELL.toml", "--force", "--json"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const std::string said = "one disc stands still in a bed that moves, at x, y = (80.0, 30.0) px";
+    EXPECT_EQ(ran.err.find(said) != std::string::npos, bubble) << ran.err;
+    EXPECT_EQ(nlohmann::json::parse(ran.out)["tracks"], bubble ? 101 : 100);
+  }
 }
 
 // Without the frames per cycle a film has no phases; the note says what gives them.
