@@ -52,8 +52,9 @@ void run(const BeadOptions& o, const Common& common) {
     const calibration::BeadFrames beads =
         calibration::locate_beads(*frames, locator, lens, o.frames, common.n_threads(), bar);
     c = calibration::count_beads(beads);
-    if (const std::string others = calibration::others_in_words(beads); !others.empty())
-      out.notes.push_back(others);
+    for (const std::string& doubt :
+         {calibration::others_in_words(beads), beads.aspect ? beads.aspect->doubt() : std::string()})
+      if (!doubt.empty()) out.notes.push_back(doubt);
     if (const auto m = calibrated(cell, "cell.width")) width_error = m->standard_error[0];
   }
   const std::string data = data_hash(o.flags.stack);

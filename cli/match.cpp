@@ -120,7 +120,7 @@ twin::Twin add_twin(const Common& common, const MatchOptions& o, const twin::Twi
   for (const std::string& doubt : twin.cell_doubts)
     note(common, fmt::format("{}: {}", of_stack.stack.string(), doubt));
   for (const std::string& doubt :
-       {twin.paler_doubt, twin.surplus_tracks, twin.scale_doubt, twin.still_discs})
+       {twin.paler_doubt, twin.surplus_tracks, twin.scale_doubt, twin.aspect_doubt, twin.still_discs})
     if (!doubt.empty()) note(common, fmt::format("{}: {}.", of_stack.stack.string(), doubt));
   if (twin.records_transient())
     note(common,

@@ -174,7 +174,7 @@ void run(TrackOptions& o, const Common& common) {
          "the stated drive does not fit the film: " + film.check.disagreement + " (--trust-stated-drive).");
   if (!stack.phases.warning.empty()) note(common, stack.phases.warning + ".");
   for (const std::string& doubt : {stack.missing_beads(), stack.paler_doubt(), stack.surplus_tracks(),
-                                   stack.scale_doubt(cell), stack.still_discs()})
+                                   stack.scale_doubt(cell), stack.aspect_doubt(), stack.still_discs()})
     if (!doubt.empty()) note(common, doubt + ".");
   // Write the trajectory, then the table.
   Provenance provenance = common.provenance();
@@ -212,6 +212,8 @@ void run(TrackOptions& o, const Common& common) {
                              {"outside_cell", stack.outside_cell},
                              {"wrong_radius", stack.wrong_radius},
                              {"paler", stack.paler}};
+  if (stack.aspect)
+    document["aspect"] = {{"value", stack.aspect->ratio}, {"standard_error", stack.aspect->error}};
   document.update(nlohmann::json::parse(plan.info.tracking_json));
   if (const nlohmann::json said = imaging::restrictions(o.film.locating); !said.is_null())
     document["restrictions"] = said;

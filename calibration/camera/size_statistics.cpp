@@ -191,9 +191,12 @@ BeadFrames locate_beads(imaging::FrameSource& frames, const imaging::LocatorOpti
   out.model_scatter = kDiameterModelScatter_px;
   imaging::FramesAhead ahead(some);
   const imaging::LocatorOptions locator = imaging::configure_locator(ahead, options, threads).locator;
+  constexpr std::int64_t kAspectFrames = 12;
+  imaging::RimAspect aspect;
   imaging::locate_stack(
       ahead, locator, threads,
-      [&](std::int64_t, const cv::Mat&, const imaging::Located& found) {
+      [&](std::int64_t frame, const cv::Mat& grey, const imaging::Located& found) {
+        if (frame < kAspectFrames) aspect.add(grey, found.beads, found.path_px);
         out.frames.emplace_back();
         out.counts.push_back(found.beads.size());
         out.others.push_back(objects_of(found.dropped, locator.diameter_px));
@@ -208,6 +211,7 @@ BeadFrames locate_beads(imaging::FrameSource& frames, const imaging::LocatorOpti
         }
       },
       progress);
+  out.aspect = aspect.value();
   return out;
 }
 

@@ -11,6 +11,7 @@
 #include "core/progress.hpp"
 #include "imaging/geometry/lens.hpp"
 #include "imaging/locate/locator.hpp"
+#include "imaging/refine/rim_aspect.hpp"
 #include "imaging/stack/frame_source.hpp"
 #include "trajectory/trajectory.hpp"
 
@@ -32,6 +33,7 @@ struct BeadFrames {
   /// Systematic errors of the diameters beyond their noise: of the mean, and from disc to disc, which depends
   /// on the contacts of each disc. 0: no systematic error.
   double mean_model_error = 0, model_scatter = 0;
+  std::optional<imaging::Aspect> aspect;  ///< of the discs in the picture, from their first dozen frames
 };
 
 /// Systematic errors of the diameters from locate_beads, px. Touching discs are measured too large by the
