@@ -49,8 +49,12 @@ void run(const BeadOptions& o, const Common& common) {
       lens = imaging::Lens(first.size(), cell.rotation_deg, cell.distortion);
     }
     ProgressBar bar(common, "beads");
-    c = calibration::count_beads(
-        calibration::locate_beads(*frames, locator, lens, o.frames, common.n_threads(), bar));
+    const calibration::BeadFrames beads =
+        calibration::locate_beads(*frames, locator, lens, o.frames, common.n_threads(), bar);
+    c = calibration::count_beads(beads);
+    for (const std::string& doubt :
+         {calibration::others_in_words(beads), beads.aspect ? beads.aspect->doubt() : std::string()})
+      if (!doubt.empty()) out.notes.push_back(doubt);
     if (const auto m = calibrated(cell, "cell.width")) width_error = m->standard_error[0];
   }
   const std::string data = data_hash(o.flags.stack);

@@ -239,6 +239,19 @@ void report_scales(CalibrationResult& out, const MeasuredCamera& m) {
     const double apart = (beads.value - walls.value) / std::hypot(beads.error, walls.error);
     d["scales"]["standard_errors_apart"] = finite(apart);
     out.text += fmt::format("  walls and diameters are {:.1f} standard errors apart\n", std::abs(apart));
+    // A width in sigma is often the distance of the walls in px over the diameter in px.
+    constexpr double kSame = 2e-3;
+    const double width_px = m.geometry.width_px();
+    const bool measured = calibrated(m.cell, "cell.width").has_value(),
+               product = m.cell.pixels_per_sigma &&
+                         std::abs(*m.cell.pixels_per_sigma * *m.cell.width / width_px - 1) < kSame;
+    if (measured || product)
+      out.notes.push_back(fmt::format(
+          "the two scales are independent only if cell.width was measured in the laboratory: {}; if it was "
+          "derived from the bead diameter in the picture, as twincell new does without --cell-width-mm, they "
+          "agree whatever the true scale is",
+          measured ? "it comes from a calibration of the film"
+                   : "it is the distance of the walls in px over camera.pixels_per_sigma"));
   }
 }
 

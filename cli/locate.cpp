@@ -23,6 +23,7 @@
 #include "imaging/benchmark/score.hpp"
 #include "imaging/preprocess/open_flattened.hpp"
 #include "imaging/settings/configure_locator.hpp"
+#include "imaging/stack/repeated_frames.hpp"
 #include "imaging/track/debug_pictures.hpp"
 #include "imaging/track/locate_stack.hpp"
 #include "imaging/track/overlay.hpp"
@@ -142,9 +143,11 @@ void run(LocateOptions& o, const Common& common) {
 
   std::optional<LocateView> view;
   if (!o.view.empty()) view.emplace(o.locating, region, locator, choice);
+  imaging::RepeatedFrames repeated;
   const std::int64_t n = imaging::locate_stack(
       ahead, locator, common.n_threads(),
       [&](std::int64_t index, const cv::Mat& grey, const imaging::Located& in_region) {
+        repeated.add(grey);
         const std::int64_t frame = range.number(index);
         const imaging::Located located = imaging::in_whole_picture(in_region, region);
         located_frames.add(frame, located);
@@ -161,7 +164,10 @@ void run(LocateOptions& o, const Common& common) {
 
   const std::int64_t settings_frame = range.number(found.frame);
   const std::string& refine = given.refine.method;
-  const std::string of_settings = settings_warnings(choice, refine), doubts = located_frames.doubts();
+  std::string doubts = located_frames.doubts();
+  if (const std::string repeats = imaging::repeats_in_words(repeated.repeats(), range); !repeats.empty())
+    doubts += repeats + "\n";
+  const std::string of_settings = settings_warnings(choice, refine);
   nlohmann::json document = located_frames.document();
   document.update({{"stack", o.stack}, {"output", o.output}, {"warnings", lines_of(of_settings + doubts)}});
   document.update(found_settings_as_json(given, locator, settings_frame));

@@ -119,7 +119,8 @@ twin::Twin add_twin(const Common& common, const MatchOptions& o, const twin::Twi
                              twin.missing_beads, twin.beads));
   for (const std::string& doubt : twin.cell_doubts)
     note(common, fmt::format("{}: {}", of_stack.stack.string(), doubt));
-  for (const std::string& doubt : {twin.paler_doubt, twin.surplus_tracks, twin.scale_doubt})
+  for (const std::string& doubt :
+       {twin.paler_doubt, twin.surplus_tracks, twin.scale_doubt, twin.aspect_doubt, twin.still_discs})
     if (!doubt.empty()) note(common, fmt::format("{}: {}.", of_stack.stack.string(), doubt));
   if (twin.records_transient())
     note(common,

@@ -116,6 +116,7 @@ nlohmann::json json_of(const twin::CellSurvey& s, const twin::CellDraft& draft) 
   }
   for (const twin::NotMeasured& m : s.missing)
     d["not_measured"].push_back({{"what", m.what}, {"why", m.why}, {"remedy", m.remedy}});
+  if (s.aspect) d["aspect"] = {{"value", s.aspect->ratio}, {"standard_error", s.aspect->error}};
   if (s.drive && s.drive->frames_per_cycle > 0) {
     d["frames_per_cycle"] = s.drive->frames_per_cycle;
     d["first_phase"] = s.drive->first_phase;

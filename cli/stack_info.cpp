@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
 #include "imaging/stack/open_frames.hpp"
+#include "imaging/stack/repeated_frames.hpp"
 
 namespace twincell::cli {
 
@@ -117,12 +118,24 @@ nlohmann::json describe_stack(const std::filesystem::path& stack) {
   if (info.recorded_unix) d["recorded_unix"] = *info.recorded_unix;
   if (info.other_files > 0) d["other_files"] = info.other_files;
   judge_values(v, info, whole_numbers, d);
-  if (const auto first = frames->time_s()) {
-    // Reading all time stamps would require reading all frames. The second stamp is enough to judge the
-    // stamps.
-    d["time"] = {{"origin", info.time_origin}, {"first_s", *first}};
-    if (frames->next(frame)) d["time"]["second_s"] = *frames->time_s();
+  const auto first = frames->time_s();
+  if (first) d["time"] = {{"origin", info.time_origin}, {"first_s", *first}};
+  // Reading all frames would take minutes. The second stamp is enough to judge the stamps; frames that a
+  // conversion of the frame rate repeats return every few frames.
+  constexpr std::size_t kMostRead = 100;
+  imaging::RepeatedFrames repeated;
+  repeated.add(frame);
+  std::size_t read = 1;
+  try {
+    for (; read < kMostRead && frames->next(frame); ++read) {
+      if (first && read == 1) d["time"]["second_s"] = *frames->time_s();
+      repeated.add(frame);
+    }
+  } catch (const InputError& e) {
+    d["notes"].push_back(fmt::format("frame {} cannot be read: {}", read, e.what()));
   }
+  if (const std::string repeats = imaging::repeats_in_words(repeated.repeats()); !repeats.empty())
+    d["notes"].push_back((read == kMostRead ? "at the beginning, " : "") + repeats + ".");
   return d;
 }
 

@@ -111,6 +111,16 @@ std::string describe(const imaging::TrackedStack& stack) {
   return text;
 }
 
+/// What is missing for times and heights of the plate, and what gives it.
+std::string unknown_in_words(const imaging::PhaseTable& phases, const imaging::PhaseRequest& request) {
+  if (phases.locked()) return "the drive is not stated (two keys of [drive], such as gamma and amplitude)";
+  if (request.phase_lock == "none") return "--phase-lock none leaves out the phases";
+  return "the frames per cycle are not stated, so that no frame has a phase; give them (--phase-lock N, or "
+         "camera.frames_per_cycle), or let the plate or the bed show them (--phase-lock found), or, if the "
+         "period is no whole number of frames, list them (twincell calibrate plate --phases LIST.csv, then "
+         "--phase-lock LIST.csv)";
+}
+
 /// Links the beads of a table.
 calibration::TrackedFilm track_beads_of_table(const TrackOptions& o, const Common& common,
                                               StageTimes* times) {
@@ -163,8 +173,8 @@ void run(TrackOptions& o, const Common& common) {
     note(common,
          "the stated drive does not fit the film: " + film.check.disagreement + " (--trust-stated-drive).");
   if (!stack.phases.warning.empty()) note(common, stack.phases.warning + ".");
-  for (const std::string& doubt :
-       {stack.missing_beads(), stack.paler_doubt(), stack.surplus_tracks(), stack.scale_doubt(cell)})
+  for (const std::string& doubt : {stack.missing_beads(), stack.paler_doubt(), stack.surplus_tracks(),
+                                   stack.scale_doubt(cell), stack.aspect_doubt(), stack.still_discs()})
     if (!doubt.empty()) note(common, doubt + ".");
   // Write the trajectory, then the table.
   Provenance provenance = common.provenance();
@@ -188,9 +198,8 @@ void run(TrackOptions& o, const Common& common) {
     note(common, fmt::format("no scale was given: sigma is the bead diameter of {:.3f} px.",
                              stack.locator.diameter_px));
   if (!plan.info.columns.plate_height)
-    note(common,
-         "the drive or the frames per cycle are unknown: time is the frame number, and the height of the "
-         "plate is absent.");
+    note(common, unknown_in_words(stack.phases, o.film.request.phase) +
+                     ": time is the frame number, and the height of the plate is absent.");
   // Result.
   std::int64_t beads = 0;
   for (const imaging::TrackSummary& t : stack.tracks) beads += t.seen;
@@ -203,6 +212,8 @@ void run(TrackOptions& o, const Common& common) {
                              {"outside_cell", stack.outside_cell},
                              {"wrong_radius", stack.wrong_radius},
                              {"paler", stack.paler}};
+  if (stack.aspect)
+    document["aspect"] = {{"value", stack.aspect->ratio}, {"standard_error", stack.aspect->error}};
   document.update(nlohmann::json::parse(plan.info.tracking_json));
   if (const nlohmann::json said = imaging::restrictions(o.film.locating); !said.is_null())
     document["restrictions"] = said;

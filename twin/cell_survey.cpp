@@ -90,8 +90,10 @@ std::optional<imaging::LocatorOptions> survey_beads(CellSurvey& s, const SurveyO
   try {
     ReadableFrames frames(s.stack);
     const auto bar = progress("beads");
-    s.beads = calibration::count_beads(
-        calibration::locate_beads(frames, found, std::nullopt, kFrames, options.threads, *bar));
+    const calibration::BeadFrames beads =
+        calibration::locate_beads(frames, found, std::nullopt, kFrames, options.threads, *bar);
+    s.beads = calibration::count_beads(beads);
+    s.aspect = beads.aspect;
   } catch (const InputError& e) {
     s.missing.push_back({"the bead diameter", fmt::format("too few beads are seen ({})", e.what()), remedy});
     return std::nullopt;
@@ -278,6 +280,8 @@ CellSurvey survey_cell(const std::filesystem::path& stack, const SurveyOptions& 
   survey_edges(s, options, progress);
   if (locator && (!s.has_walls() || !s.plate_row)) survey_bed(s, *locator, options, progress);
   s.notes.insert(s.notes.begin(), s.info.notes.begin(), s.info.notes.end());
+  if (const std::string doubt = s.aspect ? s.aspect->doubt() : ""; !doubt.empty())
+    s.notes.push_back(doubt + ".");
   if (!s.unreadable.empty())
     s.notes.insert(s.notes.begin(),
                    fmt::format("only the first {} frames are used: {}", s.n_frames, s.unreadable));

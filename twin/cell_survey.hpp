@@ -46,6 +46,7 @@ struct CellSurvey {
   std::string refine = imaging::RefineOptions{}.method;  ///< the refiner that suits the discs
   std::vector<double> other_diameters_px;                ///< of discs of further sizes
   std::optional<calibration::SizeStatistics> beads;
+  std::optional<imaging::Aspect> aspect;  ///< height over width of the beads in the picture
   std::optional<calibration::CellGeometry> geometry;
   std::optional<calibration::DriveFit> drive;       ///< motion of the plate; times in frames
   std::optional<calibration::Estimate> plate_row;   ///< mean height of the plate, row of the ideal picture

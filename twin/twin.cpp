@@ -223,6 +223,8 @@ void track_experiment(imaging::FrameSource& frames, FilmedCell& filmed, calibrat
   twin.phases = stack.phases;
   twin.missing_beads = stack.missing_beads();
   twin.paler_doubt = stack.paler_doubt();
+  twin.aspect_doubt = stack.aspect_doubt();
+  twin.still_discs = stack.still_discs();
   twin.surplus_tracks = stack.surplus_tracks();
   twin.scale_doubt = stack.scale_doubt(cell);
   imaging::TrackPlan plan = imaging::plan_trajectory(stack, cell, stack.locator.diameter_px, 1);

@@ -70,6 +70,8 @@ struct Twin {
   imaging::PhaseTable phases;   ///< of the stack
   std::string missing_beads;    ///< LinkedDetections::missing_beads of the stack
   std::string paler_doubt;      ///< TrackedStack::paler_doubt of the stack
+  std::string aspect_doubt;     ///< TrackedStack::aspect_doubt of the stack
+  std::string still_discs;      ///< LinkedDetections::still_discs of the stack
   std::string surplus_tracks;   ///< LinkedDetections::surplus_tracks of the stack
   std::string scale_doubt;      ///< TrackedStack::scale_doubt of the stack
   std::vector<std::string> cell_doubts;  ///< BedInCell::doubts of the stack

@@ -138,6 +138,26 @@ void add_gradient(SizeStatistics& c, const BeadFrames& beads, double middle, dou
   c.gradient_y = {line[2] / middle, std::sqrt(covariance(2, 2)) / middle};
 }
 
+/// Groups of rejected discs of another size that are less than a bead diameter apart.
+std::vector<SizedBead> objects_of(const std::vector<imaging::Detection>& dropped, double diameter) {
+  constexpr double kGood = 0.8;  // least score
+  struct Group {
+    double x = 0, y = 0, n = 0;
+  };
+  std::vector<Group> groups;
+  for (const imaging::Detection& d : dropped) {
+    if (d.verdict != imaging::Verdict::wrong_radius || d.score < kGood || d.edge) continue;
+    const auto near = std::find_if(groups.begin(), groups.end(), [&](const Group& g) {
+      return std::hypot(g.x / g.n - d.x, g.y / g.n - d.y) < diameter;
+    });
+    Group& g = near == groups.end() ? groups.emplace_back() : *near;
+    g.x += d.x, g.y += d.y, ++g.n;
+  }
+  std::vector<SizedBead> objects;
+  for (const Group& g : groups) objects.push_back({g.x / g.n, g.y / g.n});
+  return objects;
+}
+
 }  // namespace
 
 BeadFrames locate_beads(imaging::FrameSource& frames, const imaging::LocatorOptions& options,
@@ -171,11 +191,15 @@ BeadFrames locate_beads(imaging::FrameSource& frames, const imaging::LocatorOpti
   out.model_scatter = kDiameterModelScatter_px;
   imaging::FramesAhead ahead(some);
   const imaging::LocatorOptions locator = imaging::configure_locator(ahead, options, threads).locator;
+  constexpr std::int64_t kAspectFrames = 12;
+  imaging::RimAspect aspect;
   imaging::locate_stack(
       ahead, locator, threads,
-      [&](std::int64_t, const cv::Mat&, const imaging::Located& found) {
+      [&](std::int64_t frame, const cv::Mat& grey, const imaging::Located& found) {
+        if (frame < kAspectFrames) aspect.add(grey, found.beads, found.path_px);
         out.frames.emplace_back();
         out.counts.push_back(found.beads.size());
+        out.others.push_back(objects_of(found.dropped, locator.diameter_px));
         for (const imaging::Detection& b : found.beads) {
           if (b.edge) continue;
           SizedBead bead{b.x, b.y, b.radius, b.sigma_radius};
@@ -187,6 +211,7 @@ BeadFrames locate_beads(imaging::FrameSource& frames, const imaging::LocatorOpti
         }
       },
       progress);
+  out.aspect = aspect.value();
   return out;
 }
 
@@ -208,6 +233,32 @@ BeadFrames beads_of(const TrajectorySource& trajectory, int most) {
     out.counts.push_back(out.frames.back().size());
   }
   return out;
+}
+
+std::string others_in_words(const BeadFrames& beads) {
+  constexpr double kMostFrames = 0.5, kMost = 0.1;
+  std::size_t with = 0, first = 0;
+  double all = 0, others = 0;
+  std::vector<double> numbers;
+  for (std::size_t f = 0; f < beads.others.size(); ++f) {
+    all += static_cast<double>(beads.counts[f]);
+    others += static_cast<double>(beads.others[f].size());
+    if (beads.others[f].empty()) continue;
+    if (with++ == 0) first = f;
+    numbers.push_back(static_cast<double>(beads.others[f].size()));
+  }
+  if (with == 0 || static_cast<double>(with) < kMostFrames * static_cast<double>(beads.others.size()) ||
+      others > kMost * all)
+    return {};
+  const SizedBead& at = beads.others[first].front();
+  return fmt::format(
+      "{:g} object{} of another size than the beads, as an intruder, {} in {} of {} frames, the first at x, "
+      "y "
+      "= {:.0f}, {:.0f} px; the numbers here leave such objects out (twincell locate --diameter D1 D2 "
+      "locates "
+      "discs of two sizes)",
+      upper_median(numbers), upper_median(numbers) == 1 ? "" : "s",
+      upper_median(numbers) == 1 ? "is seen" : "are seen", with, beads.others.size(), at.x, at.y);
 }
 
 SizeStatistics count_beads(const BeadFrames& beads) {

@@ -11,6 +11,7 @@
 #include "core/progress.hpp"
 #include "imaging/geometry/lens.hpp"
 #include "imaging/locate/locator.hpp"
+#include "imaging/refine/rim_aspect.hpp"
 #include "imaging/stack/frame_source.hpp"
 #include "trajectory/trajectory.hpp"
 
@@ -26,9 +27,13 @@ struct SizedBead {
 struct BeadFrames {
   std::vector<std::vector<SizedBead>> frames;  ///< [frames][beads]
   std::vector<std::size_t> counts;             ///< [frames], beads cut by the border included
+  /// [frames] places of dark objects of another size than the beads, which count as no beads. Discs that were
+  /// fitted less than a bead diameter from their mean place, as in one larger disc, are one object; radius 0.
+  std::vector<std::vector<SizedBead>> others;
   /// Systematic errors of the diameters beyond their noise: of the mean, and from disc to disc, which depends
   /// on the contacts of each disc. 0: no systematic error.
   double mean_model_error = 0, model_scatter = 0;
+  std::optional<imaging::Aspect> aspect;  ///< of the discs in the picture, from their first dozen frames
 };
 
 /// Systematic errors of the diameters from locate_beads, px. Touching discs are measured too large by the
@@ -63,6 +68,10 @@ struct SizeStatistics {
   std::vector<double> diameters;    ///< accepted diameters of all frames, sorted, for the histogram
   std::optional<Estimate> spacing;  ///< centre distance of touching beads; absent if it cannot be determined
 };
+
+/// A sentence, without a full stop, if at least half of the frames show objects of another size than the
+/// beads, such as an intruder, and these are at most a tenth of the beads. Empty otherwise.
+std::string others_in_words(const BeadFrames& beads);
 
 /// Computes the statistics. Beads of one frame count as independent, the same beads in other frames do not:
 /// the standard errors of quantities that vary between beads use the number of beads in one frame. \throws

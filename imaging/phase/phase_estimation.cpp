@@ -79,11 +79,16 @@ std::size_t first_dip(std::span<const double> dip, double deep) {
 }
 
 /// Candidates for the period, in frames.
-std::vector<std::size_t> likely_periods(const Steps& steps, int given) {
+/// \param at_rest the bed does not move
+std::vector<std::size_t> likely_periods(const Steps& steps, int given, bool at_rest) {
   auto refuse = [](const std::string& why) {
     throw InputError(Where{.file = {}, .key = "phase-lock"},
                      why + "; give --phase-lock N or a list of triggers instead.");
   };
+  const std::string does_not_repeat = at_rest
+                                          ? "the bed is at rest, its mean height changes by less than 0.02 "
+                                            "bead diameters, and a bed at rest shows no phases"
+                                          : "the bed's motion does not repeat itself";
   constexpr std::size_t kFewest = 3;
   const std::string too_few = "a cycle has fewer than three frames";
   if (given > 0 && static_cast<std::size_t>(given) < kFewest) refuse(too_few);
@@ -97,14 +102,14 @@ std::vector<std::size_t> likely_periods(const Steps& steps, int given) {
   if (given > 0) {
     const auto period = static_cast<std::size_t>(given);
     if (period >= lags || std::min(mean[period], median[period]) > kGivenPeriodDip)
-      refuse(fmt::format("the bed's motion does not repeat itself after {} frames", given));
+      refuse(at_rest ? does_not_repeat : fmt::format("{} after {} frames", does_not_repeat, given));
     return {period};
   }
   std::vector<std::size_t> periods;
   const std::size_t of_mean = first_dip(mean, kPeriodDip), of_median = first_dip(median, kPeriodDipOfMedian);
   if (of_mean >= kFewest) periods.push_back(of_mean);
   if (of_median >= kFewest && of_median != of_mean) periods.push_back(of_median);
-  if (periods.empty()) refuse(of_mean + of_median > 0 ? too_few : "the bed's motion does not repeat itself");
+  if (periods.empty()) refuse(of_mean + of_median > 0 ? too_few : does_not_repeat);
   return periods;
 }
 
@@ -410,9 +415,12 @@ double log_odds_of_repeat(std::span<const double> steps) {
 
 PhaseTable estimate_phases(const BedMotion& motion, const PhaseEstimationOptions& options) {
   // Period: of the candidates the one with the smallest cost at a common scatter.
+  constexpr double kLeastRise = 0.02;  // bead diameters
   const Steps steps = steps_of(motion.heights);
+  const auto [low, high] = std::minmax_element(motion.heights.begin(), motion.heights.end());
+  const bool at_rest = low == high || *high - *low < kLeastRise;
   std::optional<Fit> best;
-  for (const std::size_t n : likely_periods(steps, options.frames_per_cycle)) {
+  for (const std::size_t n : likely_periods(steps, options.frames_per_cycle, at_rest)) {
     Fit fit = fit_period(steps, motion, n);
     const double sigma = best ? std::min(fit.sigma, best->sigma) : 0;
     if (!best || fit.cost(steps, motion, sigma) < best->cost(steps, motion, sigma)) best = std::move(fit);

@@ -61,7 +61,7 @@ std::vector<std::uint8_t> RepeatedFrames::repeats() const {
   return certain ? repeats : std::vector<std::uint8_t>{};
 }
 
-std::string repeats_in_words(std::span<const std::uint8_t> repeats) {
+std::string repeats_in_words(std::span<const std::uint8_t> repeats, const FrameRange& range) {
   const auto first = std::find(repeats.begin(), repeats.end(), 1);
   if (first == repeats.end()) return {};
   return fmt::format(
@@ -69,7 +69,7 @@ std::string repeats_in_words(std::span<const std::uint8_t> repeats) {
       "the "
       "frame rate, or a copy, has repeated them, as noise makes no two frames of a camera equal; export the "
       "film without a conversion",
-      std::count(repeats.begin(), repeats.end(), 1), repeats.size(), first - repeats.begin());
+      std::count(repeats.begin(), repeats.end(), 1), repeats.size(), range.number(first - repeats.begin()));
 }
 
 }  // namespace twincell::imaging

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "imaging/stack/chosen_frames.hpp"
+
 namespace twincell::imaging {
 
 /// Notices frames that equal the frame before them to the bit. Memory: 16 bytes per frame and one frame.
@@ -32,7 +34,8 @@ class RepeatedFrames {
 };
 
 /// "16 of 96 frames equal the frame before them to the bit, the first of them frame 5: ...", without a full
-/// stop; empty if no frame repeats another. \param repeats as RepeatedFrames::repeats
-std::string repeats_in_words(std::span<const std::uint8_t> repeats);
+/// stop; empty if no frame repeats another. \param repeats as RepeatedFrames::repeats \param range the frames
+/// of the stack that they are
+std::string repeats_in_words(std::span<const std::uint8_t> repeats, const FrameRange& range = {});
 
 }  // namespace twincell::imaging

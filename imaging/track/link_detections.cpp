@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/median.hpp"
 #include "imaging/link/initial_velocities.hpp"
 #include "imaging/phase/phase_estimation.hpp"
 #include "imaging/phase/plate_phases.hpp"
@@ -162,6 +163,31 @@ std::string LinkedDetections::surplus_tracks() const {
       n_tracks, most);
 }
 
+std::string LinkedDetections::still_discs() const {
+  constexpr std::int64_t kFewestFrames = 20;
+  constexpr double kStill = 0.01, kMoving = 0.1, kFew = 0.1;
+  constexpr std::size_t kMostNamed = 5;
+  std::vector<double> moved;
+  std::vector<const TrackSummary*> still;
+  for (const TrackSummary& t : tracks) {
+    if (t.radius_px <= 0 || t.seen < kFewestFrames || 2 * t.seen < static_cast<std::int64_t>(frames.size()))
+      continue;
+    moved.push_back(t.scatter_px() / (2 * t.radius_px));
+    if (moved.back() < kStill) still.push_back(&t);
+  }
+  if (still.empty() || static_cast<double>(still.size()) > kFew * static_cast<double>(moved.size()) ||
+      upper_median(moved) < kMoving)
+    return {};
+  std::string places;
+  for (std::size_t i = 0; i < std::min(still.size(), kMostNamed); ++i)
+    places += fmt::format("{}({:.1f}, {:.1f})", i == 0 ? "" : ", ", still[i]->x_px, still[i]->y_px);
+  return fmt::format(
+      "{} in a bed that moves, at x, y = {}{} px: a bubble, dirt or a letter, which counts as a bead here; "
+      "leave the place out with --mask or --roi",
+      still.size() == 1 ? "one disc stands still" : fmt::format("{} discs stand still", still.size()), places,
+      still.size() > kMostNamed ? ", ..." : "");
+}
+
 namespace {
 
 /// Links the frames with the phases of `stack`. \param motion collects the motion of the bed, without
@@ -210,6 +236,10 @@ void link_frames(const DetectionStore& located, LinkOptions link, const CellDesc
       track.tracer += beads[k].tracer ? 1 : 0;
       track.ambiguous += beads[k].ambiguous ? 1 : 0;
       track.radius_px += (beads[k].radius_px - track.radius_px) / static_cast<double>(track.seen);
+      const double dx = beads[k].x_px - track.x_px, dy = beads[k].y_px - track.y_px;
+      track.x_px += dx / static_cast<double>(track.seen);
+      track.y_px += dy / static_cast<double>(track.seen);
+      track.squares_px2 += dx * (beads[k].x_px - track.x_px) + dy * (beads[k].y_px - track.y_px);
     }
     stack.frames.append(beads);
     if (f % 64 == 0) progress.update(static_cast<std::int64_t>(f), static_cast<std::int64_t>(located.size()));

@@ -2,6 +2,7 @@
 /// \file
 /// From the beads of single frames to tracks: the phase of each frame, and the identity of each bead.
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -32,6 +33,12 @@ struct TrackSummary {
   std::int64_t tracer = 0;           ///< of them, those in which the bead looked like a tracer
   std::int64_t ambiguous = 0;        ///< of its links, those that are ambiguous
   double radius_px = 0;              ///< mean radius
+  double x_px = 0, y_px = 0;         ///< mean position
+  double squares_px2 = 0;            ///< sum of the squared distances from it
+  /// Root mean square distance from the mean position, px.
+  [[nodiscard]] double scatter_px() const {
+    return seen > 0 ? std::sqrt(squares_px2 / static_cast<double>(seen)) : 0;
+  }
   [[nodiscard]] bool is_tracer() const { return 2 * tracer > seen; }
 };
 
@@ -53,6 +60,11 @@ struct LinkedDetections {
   /// A sentence, without a full stop, if there are more than 1.2 times as many tracks as beads in any frame.
   /// Empty otherwise.
   [[nodiscard]] std::string surplus_tracks() const;
+  /// A sentence, without a full stop, that names discs that stand still in a moving bed, as bubbles, dirt and
+  /// letters do: seen in at least 20 frames and half of all, within 0.01 diameters (rms) of their mean
+  /// positions, while the median bead moves by more than 0.1 (a sine of 0.28 from its lowest to its highest
+  /// point). Empty if there are none, or if more than a tenth of all stand still.
+  [[nodiscard]] std::string still_discs() const;
 };
 
 /// Determines the phase of each frame, then links. A frame taken twice is linked with interval 0. A stated

@@ -30,6 +30,7 @@ double bytes_of(const cv::Mat& frame) {
 struct Detections {
   DetectionStore frames;
   std::size_t outside_cell = 0, wrong_radius = 0, paler = 0;
+  std::optional<Aspect> aspect;
   bool cut_by_frame = false;  ///< at least one bead is cut by the frame
 };
 
@@ -78,9 +79,14 @@ Detections detect(FramesAhead& frames, const LocatorOptions& locator, const Cell
   std::vector<TrackedBead> beads;
   std::size_t inside = 0;
   const InsideCell in_cell(cell, picture);
+  constexpr std::int64_t kAspectFrames = 12;
+  const std::int64_t stride =
+      std::max<std::int64_t>(1, static_cast<std::int64_t>(frames.source().announced()) / kAspectFrames);
+  RimAspect aspect;
   locate_stack(
       frames, locator, threads,
-      [&](std::int64_t, const cv::Mat& grey, const Located& found) {
+      [&](std::int64_t frame, const cv::Mat& grey, const Located& found) {
+        if (frame % stride == 0) aspect.add(grey, found.beads, found.path_px);
         all.wrong_radius += static_cast<std::size_t>(
             std::count_if(found.dropped.begin(), found.dropped.end(),
                           [](const Detection& b) { return b.verdict == Verdict::wrong_radius; }));
@@ -111,6 +117,7 @@ Detections detect(FramesAhead& frames, const LocatorOptions& locator, const Cell
       },
       progress);
   require_some_inside(cell, inside, all.outside_cell);
+  all.aspect = aspect.value();
   return all;
 }
 
@@ -179,10 +186,12 @@ TrackedStack track_stack(FrameSource& stack, const LocatorOptions& given, LinkOp
   LinkedDetections linked =
       link_detections(detected.frames, link, cell, source, folder, signals, witnessed.evidence());
   linking.count(static_cast<double>(linked.links.links));
-  return {std::move(linked),      locator,
-          witnessed.size().width, witnessed.size().height,
-          detected.outside_cell,  detected.wrong_radius,
-          detected.paler};
+  TrackedStack tracked{std::move(linked),      locator,
+                       witnessed.size().width, witnessed.size().height,
+                       detected.outside_cell,  detected.wrong_radius,
+                       detected.paler};
+  tracked.aspect = detected.aspect;
+  return tracked;
 }
 
 }  // namespace twincell::imaging

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "core/progress.hpp"
 #include "core/stage_times.hpp"
@@ -11,6 +13,7 @@
 #include "imaging/link/link.hpp"
 #include "imaging/locate/locator.hpp"
 #include "imaging/preprocess/region.hpp"
+#include "imaging/refine/rim_aspect.hpp"
 #include "imaging/stack/chosen_frames.hpp"
 #include "imaging/stack/frame_source.hpp"
 #include "imaging/track/link_detections.hpp"
@@ -28,11 +31,14 @@ struct TrackedStack : LinkedDetections {
   std::string spacing_doubt =
       {};                  ///< of a table: beads are too close for their size, or twice there, a sentence
   bool has_errors = true;  ///< the standard errors of the positions are known
+  std::optional<Aspect> aspect = {};  ///< height over width of the beads in a dozen frames of the stack
   /// Says that no bead is about one sigma wide (10 %); empty if one is, or the scale is unknown.
   [[nodiscard]] std::string scale_doubt(const CellDescription& cell) const;
   /// A sentence, without a full stop, if more paler discs than a fiftieth of the beads were left out, as
   /// tracers of another darkness may be. Empty otherwise.
   [[nodiscard]] std::string paler_doubt() const;
+  /// Aspect::doubt of the stack.
+  [[nodiscard]] std::string aspect_doubt() const { return aspect ? aspect->doubt() : ""; }
 };
 
 /// Locates the beads, determines the phases and links. The stack is read once.

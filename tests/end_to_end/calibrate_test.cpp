@@ -370,6 +370,41 @@ TEST(Calibrate, TheWrongPolarityGivesNoWalls) {
   }
 }
 
+TEST(Calibrate, BeadsNameAnIntruder) {
+  const TemporaryFolder folder;
+  for (const bool intruder : {false, true}) {
+    put_file(folder / "bed.toml", fmt::format("[cell]\nwidth = 10\n[beads]\ncount = 60\n{}[drive]\nomega = "
+                                              "1.0\ngamma = 1.5\n[time]\ncycles = 1\n",
+                                              intruder ? "[beads.intruder]\nradius = 0.9\nz = 3.0\n" : ""));
+    for (const auto& words : std::vector<std::vector<std::string>>{
+             {"simulate", folder / "bed.toml", "-o", folder / "bed.h5", "-q", "--force"},
+             {"render", folder / "bed.h5", "-o", folder / "film", "-q", "--force", "--pixels-per-sigma",
+              "12"}}) {
+      const Ran ran = run_program(words);
+      ASSERT_EQ(ran.code, 0) << ran.err;
+    }
+    const nlohmann::json d = run_json({"calibrate", "beads", folder / "film"});
+    expect_within(d, "beads.diameter", 12, 0.01);
+    const std::string notes = d["notes"].dump();
+    EXPECT_EQ(notes.find("1 object of another size than the beads") != std::string::npos, intruder) << notes;
+  }
+}
+
+// The width that `new` writes is the distance of the walls in px over the diameter in px.
+TEST(Calibrate, ScalesThatAreNotIndependentAreNamed) {
+  const TemporaryFolder folder;
+  film(folder, {.pixels_per_sigma = 12});
+  const auto dependent = [&](const std::string& cell) {
+    put_file(folder / "cell.toml", cell);
+    return run_json({"calibrate", "camera", folder / "frames", "--cell", folder / "cell.toml"})["notes"]
+               .dump()
+               .find("the two scales are independent only if") != std::string::npos;
+  };
+  EXPECT_TRUE(dependent("[camera]\npixels_per_sigma = 12.0\n[cell]\nwidth = 12.0\n"));
+  EXPECT_FALSE(dependent("[camera]\npixels_per_sigma = 12.0\n[cell]\nwidth = 12.2\n"));
+  EXPECT_FALSE(dependent("[cell]\nwidth = 12.0\n"));
+}
+
 TEST(Calibrate, SaysWhatIsWrongAndLeavesNothing) {
   const TemporaryFolder folder;
   EXPECT_EQ(run_program({"calibrate"}).code, 2);

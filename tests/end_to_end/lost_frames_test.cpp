@@ -136,6 +136,20 @@ TEST(LostFrames, AConversionOfTheFrameRateIsSeenAndUndone) {
   ASSERT_EQ(surveyed.code, 0) << surveyed.err;
   EXPECT_EQ(nlohmann::json::parse(surveyed.out)["cells"][0]["frames_per_cycle"], 20) << surveyed.out;
   EXPECT_NE(surveyed.err.find(said), std::string::npos) << surveyed.err;
+  const Ran described = run_program({"info", stack});
+  EXPECT_NE(described.out.find(said), std::string::npos) << described.out << described.err;
+  const fs::path beads = folder.path() / "beads.csv";
+  const Ran located = run_program({"locate", stack, "-o", beads});
+  EXPECT_NE(located.out.find(said), std::string::npos) << located.out << located.err;
+  const Ran later = run_program({"locate", stack, "-o", beads, "--frames", "3:90", "--json"});
+  ASSERT_EQ(later.code, 0) << later.err;
+  EXPECT_NE(later.out.find("15 of 87 frames equal the frame before them to the bit, the first of them frame "
+                           "5"),
+            std::string::npos)
+      << later.out;
+  EXPECT_EQ(run_program({"info", kDemo}).out.find("to the bit"), std::string::npos);
+  EXPECT_EQ(run_program({"locate", kDemo, "-o", beads, "--frames", "0:20"}).out.find("to the bit"),
+            std::string::npos);
   const fs::path whole = folder.path() / "whole.h5", part = folder.path() / "part.h5";
   ASSERT_EQ(run_program({"track", kDemo, "-o", whole, "--cell", kDemo / "CELL.toml"}).code, 0);
   const double value = s_b_of(whole)["value"];

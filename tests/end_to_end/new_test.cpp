@@ -300,6 +300,32 @@ TEST(New, WhatTheBeadsDoNotShowIsLeftOpen) {
   EXPECT_NE(d.dump().find("--drive-gamma"), std::string::npos);
 }
 
+// A film that was resized along one side, as by an editor that takes pixels for square ones.
+TEST(New, PixelsThatAreNotSquareAreNoted) {
+  const TemporaryFolder folder;
+  for (const double wanted : {1.0, 1.08}) {
+    double ratio = 0;
+    const fs::path stack = copy_of(folder, "gamma-1.6", 40, [&](const cv::Mat& frame, int) {
+      cv::Mat resized;
+      cv::resize(frame, resized, {frame.cols, cvRound(wanted * frame.rows)}, 0, 0, cv::INTER_CUBIC);
+      ratio = static_cast<double>(resized.rows) / frame.rows;
+      return resized;
+    });
+    const auto expect = [&](const Ran& ran, const nlohmann::json& aspect) {
+      EXPECT_NEAR(aspect["value"].get<double>(), ratio, 0.007);
+      EXPECT_LT(aspect["standard_error"].get<double>(), 0.007);
+      EXPECT_EQ(ran.err.find("its pixels are not square") == std::string::npos, wanted == 1) << ran.err;
+    };
+    const Ran drafted =
+        run_program({"new", stack, "-o", folder / "c.toml", "--drive-gamma", "1.6", "--json", "--force"});
+    ASSERT_EQ(drafted.code, 0) << drafted.err;
+    expect(drafted, nlohmann::json::parse(drafted.out)["cells"][0]["aspect"]);
+    const Ran tracked = run_program({"track", stack, "-o", folder / "t.h5", "--json", "--force"});
+    ASSERT_EQ(tracked.code, 0) << tracked.err;
+    expect(tracked, nlohmann::json::parse(tracked.out)["aspect"]);
+  }
+}
+
 TEST(New, AMissingStackIsAnError) {
   const TemporaryFolder folder;
   const Ran ran = run_program({"new", folder / "none", "-o", folder / "CELL.toml"});

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -135,6 +137,55 @@ TEST(Track, TracersThatAreLeftOutAreNoted) {
   const Ran profile = run_program(words);
   ASSERT_EQ(profile.code, 0) << profile.err;
   EXPECT_NE(profile.err.find("paler discs in a frame were left out"), std::string::npos) << profile.err;
+}
+
+// A bubble on the window, as wide as a bead, above a bed that bounces.
+TEST(Track, ADiscThatStandsStillInAMovingBedIsNamed) {
+  const TemporaryFolder folder;
+  const std::filesystem::path demo = TWINCELL_SOURCE_DIR "/data_samples/demo/gamma-1.6",
+                              stack = folder / "stack";
+  std::filesystem::create_directory(stack);
+  for (const bool bubble : {false, true}) {
+    for (int f = 0; f < 40; ++f) {
+      const std::string name = fmt::format("frame_{:05}.png", f);
+      cv::Mat frame = cv::imread((demo / name).string(), cv::IMREAD_GRAYSCALE);
+      if (bubble) {
+        cv::circle(frame, {80, 30}, 6, 20, -1, cv::LINE_AA);
+        cv::GaussianBlur(frame(cv::Rect(65, 15, 31, 31)), frame(cv::Rect(65, 15, 31, 31)), {0, 0}, 0.7);
+      }
+      cv::imwrite((stack / name).string(), frame);
+    }
+    const Ran ran = run_program(
+        {"track", stack, "-o", folder / "t.h5", "--cell", demo / "CELL.toml", "--force", "--json"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const std::string said = "one disc stands still in a bed that moves, at x, y = (80.0, 30.0) px";
+    EXPECT_EQ(ran.err.find(said) != std::string::npos, bubble) << ran.err;
+    EXPECT_EQ(nlohmann::json::parse(ran.out)["tracks"], bubble ? 101 : 100);
+  }
+}
+
+// Without the frames per cycle a film has no phases; the note says what gives them.
+TEST(Track, WithoutFramesPerCycleItIsSaidWhatGivesPhases) {
+  const TemporaryFolder folder;
+  const std::string demo = TWINCELL_SOURCE_DIR "/data_samples/demo/gamma-1.6";
+  const auto said = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"track", demo, "-o", folder / "t.h5", "--force", "--frames", "0:20"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Ran ran = run_program(words);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return ran.err;
+  };
+  const std::string missing = "the frames per cycle are not stated", none = "leaves out the phases",
+                    drive = "the drive is not stated";
+  const std::string plain = said({"--drive-gamma", "1.6", "--drive-amplitude", "1.6"});
+  for (const std::string& word : {missing, std::string("--phase-lock N"), std::string("--phase-lock found"),
+                                  std::string("calibrate plate --phases LIST.csv")})
+    EXPECT_NE(plain.find(word), std::string::npos) << plain;
+  const std::string chosen = said({"--phase-lock", "none"}), locked = said({"--phase-lock", "20"});
+  EXPECT_NE(chosen.find(none), std::string::npos) << chosen;
+  EXPECT_EQ(chosen.find(missing), std::string::npos) << chosen;
+  EXPECT_NE(locked.find(drive), std::string::npos) << locked;
+  EXPECT_EQ(said({"--cell", demo + "/CELL.toml"}).find("is absent"), std::string::npos);
 }
 
 // The first two cycles of a shipped film, whose plate is at row 186.2.

@@ -387,3 +387,26 @@ TEST(FoundPhase, RefusesWhatDoesNotRepeat) {
   EXPECT_THROW(estimate_phases({f.heights, {}}, {.frames_per_cycle = 13, .gamma = {}}), InputError);
   EXPECT_THROW(estimate_phases({f.heights, {}}, {.frames_per_cycle = 2, .gamma = {}}), InputError);
 }
+
+TEST(FoundPhase, ABedAtRestIsSaidToBeAtRest) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0, 0.002);
+  for (const bool noisy : {false, true})
+    for (const int given : {0, kPhases}) {
+      std::vector<double> heights(100, 0.0);
+      if (noisy)
+        for (double& h : heights) h = noise(random);
+      expect_refusal<InputError>(
+          [&] {
+            (void)estimate_phases({heights, {}}, {.frames_per_cycle = given, .gamma = {}});
+          },
+          "the bed is at rest");
+    }
+  // A bed that moves without a period is not at rest.
+  std::vector<double> heights(100);
+  for (double& h : heights) h = 100 * noise(random);
+  EXPECT_EQ(complaint_of([&] {
+              (void)estimate_phases({heights, {}}, {.frames_per_cycle = kPhases, .gamma = {}});
+            }).find("at rest"),
+            std::string::npos);
+}
