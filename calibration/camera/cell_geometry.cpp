@@ -88,11 +88,6 @@ std::optional<Line> outermost_line(std::vector<Along> points, double steepest, d
   return best;
 }
 
-double spread_of(std::vector<double> r) {
-  for (double& x : r) x = std::abs(x);
-  return r.empty() ? 0 : 1.4826 * upper_median(std::move(r));
-}
-
 /// Position of a picture point in the ideal picture: the formulas of Lens, templated for Ceres.
 template <class T>
 void ideal(const T& rotation_deg, const T& k1, double x, double y, cv::Size size, T* out) {
@@ -218,7 +213,7 @@ std::vector<WallRow> rows_of_wall(const std::vector<std::vector<imaging::EdgePoi
     for (const Along& p : all)
       if (std::abs(distance(p)) <= window) r.push_back(distance(p));
     if (r.size() < 8) break;
-    window = std::clamp(kWorstSigma * spread_of(r), 0.05, window);
+    window = std::clamp(kWorstSigma * robust_spread(r), 0.05, window);
   }
   std::map<int, WallRow> sums;
   for (std::size_t f = 0; f < frames.size(); ++f)
@@ -269,7 +264,7 @@ PlateSighting sighting(const std::vector<imaging::PixelPoint>& points, double ro
   const double middle = upper_median(rows);
   std::vector<double> r;
   for (const double z : rows) r.push_back(z - middle);
-  const double width = std::max(0.02, 3 * spread_of(r));
+  const double width = std::max(0.02, 3 * robust_spread(r));
   double sum = 0, squares = 0, n = 0;
   for (const double z : rows)
     if (std::abs(z - middle) < width) sum += z, squares += (z - middle) * (z - middle), ++n;
@@ -598,7 +593,7 @@ void GeometryFit::reject_wall_outliers(const std::vector<WallRow>& wall, bool le
   double& error = error_[left ? 0 : 1];
   std::vector<double> r;
   for (const WallRow& row : wall) r.push_back(wall_residual(row, left) * std::sqrt(row.frames));
-  error = std::max(1e-3, spread_of(r));
+  error = std::max(1e-3, robust_spread(r));
   for (std::size_t i = 0; i < r.size(); ++i)
     if (std::abs(r[i]) < kWorstSigma * error) kept.push_back(wall[i]);
 }
@@ -608,7 +603,7 @@ void GeometryFit::reject_plate_outliers() {
   std::vector<double> pooled;
   for (const auto& frame : all_.plate)
     for (const double r : plate_residuals(frame)) pooled.push_back(r);
-  error_[2] = std::max(1e-3, spread_of(pooled));
+  error_[2] = std::max(1e-3, robust_spread(pooled));
   for (const auto& frame : all_.plate) {
     const auto r = plate_residuals(frame);
     kept_.plate.emplace_back();

@@ -58,11 +58,6 @@ double residual_of(const Sample& s, double middle, bool second, const std::vecto
   return r;
 }
 
-double spread_of(std::vector<double> r) {
-  for (double& x : r) x = std::abs(x);
-  return 1.4826 * upper_median(std::move(r));
-}
-
 /// Heights with outliers clamped, because a periodogram has no robust loss function.
 std::vector<Sample> clipped(std::vector<Sample> samples) {
   std::vector<double> z;
@@ -128,7 +123,7 @@ std::vector<double> robust_start(const std::vector<Sample>& all, double omega, d
     r.reserve(part.size());
     for (const Sample& s : part) r.push_back(residual_of(s, middle, false, p));
     for (int round = 0; round < 3; ++round) {
-      const double scale = std::max(spread_of(r), 1e-9 * std::max(1.0, p[1]));
+      const double scale = std::max(robust_spread(r), 1e-9 * std::max(1.0, p[1]));
       ceres::Problem problem;
       for (const Sample& s : part)
         problem.AddResidualBlock(cost_of(s, middle, second), new ceres::CauchyLoss(scale), p.data());
@@ -160,10 +155,10 @@ Scatter scatter_of(const std::vector<Sample>& all, const Fitted& f, const std::v
     (c * c < 0.5 ? slow : fast).push_back(residuals[i]);
   }
   const double floor = 1e-9 * std::max(1.0, std::abs(p[1]));
-  if (slow.size() < 10 || fast.size() < 10) return {std::max(spread_of(residuals), floor), 0};
-  const double a = std::pow(spread_of(slow), 2), b = std::pow(spread_of(fast), 2);
+  if (slow.size() < 10 || fast.size() < 10) return {std::max(robust_spread(residuals), floor), 0};
+  const double a = std::pow(robust_spread(slow), 2), b = std::pow(robust_spread(fast), 2);
   const double moving = (b - a) / (kFast - kSlow), still = a - kSlow * moving;
-  if (moving <= 0 || still <= 0) return {std::max(spread_of(residuals), floor), 0};
+  if (moving <= 0 || still <= 0) return {std::max(robust_spread(residuals), floor), 0};
   return {std::max(std::sqrt(still), floor), std::sqrt(moving)};
 }
 
