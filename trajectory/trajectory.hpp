@@ -59,6 +59,11 @@ struct TrajectoryInfo {
   std::string tracking_json;         ///< report of the tracking of an experiment, JSON; empty if absent
 };
 
+/// Magnitude of the acceleration of gravity of a run, sigma/t0^2: that of its drive; 1 without a drive; 0 for
+/// a run that states its N_l and neither a Gamma nor a ramp: it has no gravity, as Drive cannot say. Runs of
+/// other programs state neither number.
+double gravity_of(const TrajectoryInfo& info);
+
 /// Granular temperature averaged over the time since the previous frame, m g sigma, per component as defined
 /// by temperature_components (temperature.hpp). It jumps when the bed lands, so that samples at a few phases
 /// per cycle would alias it. NaN where unknown, as before the first frame of a run.

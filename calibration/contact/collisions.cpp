@@ -13,14 +13,6 @@
 namespace twincell::calibration {
 namespace {
 
-/// Acceleration of gravity of a trajectory, reduced units. A simulation without gravity states no Gamma,
-/// unless its drive changes.
-double gravity_of(const TrajectoryInfo& info) {
-  if (!info.drive) return 1;
-  const bool none = info.source == "simulation" && !info.conditions.gamma && !info.drive->ramp;
-  return none ? 0 : info.drive->gravity;
-}
-
 /// Time in [0, longest] at which two discs in uniform relative motion touch; none if they do not.
 std::optional<double> meeting(const Vec3& r, const Vec3& v, double reach, double longest) {
   const double b = r.dot(v), c = r.squaredNorm() - reach * reach, a = v.squaredNorm();
