@@ -51,7 +51,7 @@ void WatchedImport::watch_steps(const Frame& frame) {
 
 void WatchedImport::watch_doubles(const Frame& frame) {
   const double smallest =
-      info_.radius.empty() ? 0.5 : *std::min_element(info_.radius.begin(), info_.radius.end());
+      info_.radius.empty() ? kUsualRadius : *std::min_element(info_.radius.begin(), info_.radius.end());
   if (!(smallest > 0)) return;
   const std::size_t here = listed_again(frame.position, kSameBead * 2 * smallest);
   if (doubled_ == 0) doubled_step_ = frame.step;

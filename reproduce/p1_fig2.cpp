@@ -84,8 +84,7 @@ analysis::Figure figure_of(const Packings& all) {
     for (std::size_t i = 0; i < crystal->moment.frame.position.size(); ++i) {
       const Vec3& at = crystal->moment.frame.position[i];
       if (at.x() < kSide && at.z() < kSide)
-        f.data += fmt::format("{:.5f} {:.5f} {:g}\n", at.x(), at.z(),
-                              crystal->radius.empty() ? 0.5 : crystal->radius[i]);
+        f.data += fmt::format("{:.5f} {:.5f} {:g}\n", at.x(), at.z(), radius_of(crystal->radius, i));
     }
     f.data += "\n\n";
     const double left = 0.01 + 0.31 * index;

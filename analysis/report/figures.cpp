@@ -206,7 +206,7 @@ void for_each_bead(const BeadPanel& p, const Visit& visit) {
   for (std::size_t i = 0; i < p.moment->frame.position.size(); ++i) {
     if (!p.moment->frame.present(i) || !p.moment->frame.position[i].allFinite()) continue;
     const Vec3 r = p.box.wrap(p.moment->frame.position[i]);
-    visit(r.x(), r.z() - p.moment->plate, p.radius.empty() ? 0.5 : p.radius[i], i);
+    visit(r.x(), r.z() - p.moment->plate, radius_of(p.radius, i), i);
   }
 }
 

@@ -2,7 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 using namespace twincell;
+
+TEST(TrajectoryInfo, BeadsWithoutStoredSizeHaveTheUnits) {
+  EXPECT_EQ(radius_of({}, 3), 0.5);
+  EXPECT_EQ(mass_of({}, 3), 1);
+  const std::vector<double> stored = {0.4, 0.7};
+  EXPECT_EQ(radius_of(stored, 1), 0.7);
+  EXPECT_EQ(mass_of(stored, 1), 0.7);
+}
 
 TEST(TrajectoryInfo, GravityIsThatOfTheRun) {
   TrajectoryInfo info;
