@@ -87,8 +87,7 @@ std::vector<std::string> WatchedImport::doubts() const {
   if (doubled_ > 0)
     doubts.push_back(
         fmt::format("{}, the first in the frame of step {}, {} closer than {:g} diameters to another bead: "
-                    "are beads listed "
-                    "twice?",
+                    "are beads listed twice?",
                     counted(doubled_, "bead"), doubled_step_, doubled_ == 1 ? "lies" : "lie", kSameBead));
   if (jumps_ > 0)
     doubts.push_back(fmt::format(

@@ -443,8 +443,8 @@ void bind_trajectory(py::module_& module) {
   py::class_<Contacts>(
       module, "Contacts",
       "The contacts of every frame: contacts[t] is a read-only structured array over the memory of the "
-      "frame, sorted "
-      "by (i, j), with the fields i, j, overlap, normal (3), normal_force and tangential_force (3).")
+      "frame, sorted by (i, j), with the fields i, j, overlap, normal (3), normal_force and tangential_force "
+      "(3).")
       .def("__len__", [](const Contacts& c) { return c.trajectory->n_frames(); })
       .def(
           "__getitem__",
@@ -471,8 +471,7 @@ void bind_trajectory(py::module_& module) {
           py::arg("drive") = py::none(), py::arg("phases_per_cycle") = 0, py::arg("source") = "unknown",
           "A trajectory in memory, so that data of any origin can be analysed.\n\n"
           "positions: (frames, beads, 2) as (x, z) or (frames, beads, 3) as (x, y, z), sigma; NaN where a "
-          "bead "
-          "is missing. The other arguments are the columns of the same names: vectors have the shape of "
+          "bead is missing. The other arguments are the columns of the same names: vectors have the shape of "
           "positions, numbers of beads (beads,), numbers of frames (frames,). Without a box the cell is open "
           "on all sides. Arrays are copied.")
       .def("write", &write, py::arg("path"), header_text("trajectory/formats/h5md_file.hpp", "H5mdWriter"))

@@ -115,8 +115,7 @@ analysis::Figure figure_of(const Packings& all) {
         "set style fill solid border lc rgb '#333333'\n"
         "plot '{2}.dat' index {3} using 1:($2+$3+$4) with boxes lc rgb '{4}' notitle, '' index {3} using "
         "1:($2+$3) with boxes lc rgb '{5}' notitle, '' index {3} using 1:2 with boxes lc rgb '{6}' notitle, "
-        "1./3 "
-        "with lines {7} notitle, 2./3 with lines {7} notitle\n",
+        "1./3 with lines {7} notitle, 2./3 with lines {7} notitle\n",
         static_cast<double>(all.random.size()) + 0.7,
         analysis::figure_style::panel_title('c', fmt::format("random, N_l = {}", all.layers)), f.name, index,
         kB.colour, kBetween, kA.colour, analysis::figure_style::kStated);

@@ -591,8 +591,7 @@ Figure s_j_figure(const std::vector<Run>& runs) {
   const Range range = y.padded(0.05, 0.02);
   f.plot = fmt::format(
       "set multiplot layout 2,1\nset yrange [{}:{}]\nset xlabel 'cycle j since the first analysed'\nset "
-      "ylabel 's_j / σ'\nset lmargin "
-      "9\nset key outside right top vertical samplen 1.5 Left reverse\n"
+      "ylabel 's_j / σ'\nset lmargin 9\nset key outside right top vertical samplen 1.5 Left reverse\n"
       "{}unset multiplot\n",
       range.low, range.high, panels);
   f.caption =

@@ -91,8 +91,7 @@ std::string real_differences(const Comparison& c) {
   if (without_seeds > 0)
     text += fmt::format(
         " The error of {} contains no scatter between seeds, as there is one simulation of each start: other "
-        "seeds "
-        "may differ as much.",
+        "seeds may differ as much.",
         without_seeds == n ? (n == 1 ? std::string("this") : "these")
                            : fmt::format("{} of these", without_seeds));
   return text;
@@ -195,9 +194,7 @@ std::string runs_csv(const std::vector<Run>& runs) {
 std::string differences_csv(const Comparison& c) {
   std::string text =
       "gamma,n_l,number,unit,experiment,experiment_error,simulation,simulation_error,difference,filmed,"
-      "camera,"
-      "statistics,"
-      "seeds,tracers,defects,remainder,error,attribution\n";
+      "camera,statistics,seeds,tracers,defects,remainder,error,attribution\n";
   const auto part = [](const std::optional<double>& v) {
     return csv_number(v.value_or(std::numeric_limits<double>::quiet_NaN()));
   };
@@ -588,8 +585,7 @@ std::string page(const Comparison& c, const std::vector<Figure>& figures,
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\">\n"
       "<title>{} ({})</title><style>{}</style></head><body>\n<header><h1>{}</h1><span>{} <button "
-      "id=\"theme\" "
-      "hidden>Dark</button></span></header>\n{}",
+      "id=\"theme\" hidden>Dark</button></span></header>\n{}",
       html_text(title), date, page_style(), typeset(title), date, verdict_box(c));
   html += kOpening;
   html +=

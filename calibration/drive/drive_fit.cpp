@@ -492,8 +492,7 @@ void add_stretches(DriveFit& lock) {
   if (without > 0)
     lock.notes.push_back(
         fmt::format("the plate does not follow the drive in {} of {} frames ({}), as before the shaker "
-                    "starts or after it "
-                    "stops: they have no phase, and track leaves them out",
+                    "starts or after it stops: they have no phase, and track leaves them out",
                     without, n, imaging::in_words(lock.out_of_lock_stretches)));
   if (static_cast<double>(single) > kMany * static_cast<double>(n))
     lock.notes.push_back(fmt::format(

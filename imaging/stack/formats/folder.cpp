@@ -125,12 +125,11 @@ std::unique_ptr<FrameSource> open_folder(const fs::path& folder) {
   }
   if (error) refuse(folder, "cannot be listed: " + error.message() + ".");
   if (files.empty())
-    refuse(folder,
-           stack.empty()
-               ? fmt::format("holds no PNG, TIFF, JPEG, BMP or PGM picture{}.", folders_with_pictures(folder))
-               : fmt::format("holds no PNG, TIFF, JPEG, BMP or PGM picture; it holds {}: name that "
-                             "file.",
-                             stack));
+    refuse(folder, stack.empty() ? fmt::format("holds no PNG, TIFF, JPEG, BMP or PGM picture{}.",
+                                               folders_with_pictures(folder))
+                                 : fmt::format("holds no PNG, TIFF, JPEG, BMP or PGM picture; "
+                                               "it holds {}: name that file.",
+                                               stack));
   std::vector<std::string> names;
   for (const fs::path& file : files) names.push_back(file.filename().string());
   sort_as_frames(names);
