@@ -24,7 +24,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kSearched = 2000;  // samples of the periodogram
-constexpr double kSuspicious = 0.01;     // largest p of a second harmonic that is reported as significant
+constexpr double kSuspiciousHarmonic =
+    0.01;  // largest p of a second harmonic that is reported as significant
 
 struct Sample {
   double t, z;
@@ -472,7 +473,7 @@ void add_second_harmonic(DriveFit& lock, const Attempt& a, int harmonics, double
   const double f = h.dot(c.ldlt().solve(h)) / 2;
   if (freedom > 0)
     lock.p_sinusoidal = boost::math::cdf(boost::math::complement(boost::math::fisher_f(2, freedom), f));
-  if (lock.p_sinusoidal && *lock.p_sinusoidal < kSuspicious)
+  if (lock.p_sinusoidal && *lock.p_sinusoidal < kSuspiciousHarmonic)
     lock.notes.push_back(
         fmt::format("the drive is not a pure sine: second harmonic {:.2g} +- {:.1g} of A (p = {:.1g})",
                     *lock.second_harmonic, *lock.second_harmonic_error, *lock.p_sinusoidal));

@@ -11,7 +11,7 @@
 namespace twincell::calibration {
 namespace {
 
-constexpr int kSteps = 200;
+constexpr int kCurveSteps = 200;
 
 double error_of(const DataPoint& p) {
   if (p.sigma > 0) return p.sigma;
@@ -77,8 +77,8 @@ analysis::Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& p
   const double floor = law.logarithmic ? y_axis.low / length : y_axis.low - length,
                ceiling = law.logarithmic ? y_axis.high * length : y_axis.high + length;
   const bool steps_in_ratio = law.axis == Law::Axis::logarithmic && low > 0;
-  for (int s = 0; s <= kSteps; ++s) {
-    const double share = static_cast<double>(s) / kSteps;
+  for (int s = 0; s <= kCurveSteps; ++s) {
+    const double share = static_cast<double>(s) / kCurveSteps;
     const double x = steps_in_ratio ? low * std::pow(high / low, share) : low + (high - low) * share;
     const double y = fit.at(x), error = fit.error_at(x);
     const double half = std::isfinite(error) ? reach * error : 0;
