@@ -37,8 +37,16 @@ struct BounceFlags {
   bool no_drag = false;
 };
 
-std::vector<calibration::BounceSample> samples_of(const BounceFlags& o, std::optional<Drive>& drive) {
+/// Heights of a bouncing bead, and what a trajectory says of its plate and its gravity.
+struct BounceHeights {
   std::vector<calibration::BounceSample> samples;
+  std::optional<Drive> drive;     ///< absent: a table, or a trajectory without a drive
+  std::optional<double> gravity;  ///< sigma/t0^2; absent: a table
+};
+
+BounceHeights bounce_heights(const BounceFlags& o) {
+  BounceHeights heights;
+  std::vector<calibration::BounceSample>& samples = heights.samples;
   if (is_trajectory(o.source)) {
     const H5mdReader trajectory(o.source);
     const std::size_t bead = o.bead.value_or(0), n = trajectory.info().n_beads;
@@ -46,7 +54,8 @@ std::vector<calibration::BounceSample> samples_of(const BounceFlags& o, std::opt
     if (bead >= n)
       throw ConfigError({.file = {}, .key = "--bead"},
                         fmt::format("is {}; {} has beads 0 to {}.", bead, o.source, n - 1));
-    drive = trajectory.info().drive;
+    heights.drive = trajectory.info().drive;
+    heights.gravity = gravity_of(trajectory.info());
     Frame frame;
     for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
       trajectory.read(f, frame);
@@ -69,7 +78,7 @@ std::vector<calibration::BounceSample> samples_of(const BounceFlags& o, std::opt
       if (std::isfinite(t[i])) before = t[i];
     }
   }
-  return samples;
+  return heights;
 }
 
 /// The fitted gravity against that of the trajectory. \returns a note if the flights show another one,
@@ -87,9 +96,9 @@ std::string check_gravity(const std::string& source, double stated, const calibr
 }
 
 void run_bounce(const BounceFlags& o, const Common& common) {
-  std::optional<Drive> drive;
-  const std::vector<calibration::BounceSample> samples = samples_of(o, drive);
-  const double stated = drive ? drive->gravity : 1;  // of a trajectory
+  const BounceHeights heights = bounce_heights(o);
+  const std::vector<calibration::BounceSample>& samples = heights.samples;
+  std::optional<Drive> drive = heights.drive;
   if (o.amplitude || o.omega) {
     if (!o.amplitude || !o.omega)
       throw ConfigError({.file = {}, .key = "--drive-amplitude"},
@@ -120,8 +129,9 @@ void run_bounce(const BounceFlags& o, const Common& common) {
       empty > 0)
     fit.notes.push_back(
         fmt::format("{} without a number {} left out", counted(empty, "row"), empty == 1 ? "was" : "were"));
-  if (is_trajectory(o.source) && !o.gravity)
-    if (const std::string why = check_gravity(o.source, stated, fit); !why.empty()) fit.notes.push_back(why);
+  if (heights.gravity && !o.gravity)
+    if (const std::string why = check_gravity(o.source, *heights.gravity, fit); !why.empty())
+      fit.notes.push_back(why);
   CalibrationResult out;
   out.notes = fit.notes;
   out.measured.push_back({.name = "contact.wall.restitution",

@@ -40,29 +40,7 @@ struct CostOptions {
   bool quick = false;
 };
 
-/// Steps per contact, n. No value is an integer: otherwise contacts of equal duration would all end at the
-/// same point within a step.
-constexpr std::array kLadder = {6.37, 8.37, 10.37, 14.37, 20.37, 30.37, 50.37, 70.37, 100.37, 200.37, 400.37};
-constexpr std::array kQuickLadder = {6.37, 10.37, 20.37, 50.37};
-constexpr std::array<const char*, 3> kIntegrators = {"verlet", "predicted", "split"};
-constexpr double kPaperStiffness = 1e6;
-constexpr double kSpinShare =
-    0.01;  ///< rms error of the spin over its change, at which Verlet and split are compared
 const StepSetting kReference{};  ///< the setting of the papers' simulations: Verlet, some 50 steps
-
-std::vector<StepSetting> settings(bool quick) {
-  std::vector<StepSetting> all;
-  const auto add = [&](double k_n, const auto& ladder) {
-    for (const char* integrator : kIntegrators)
-      for (const double n : ladder) all.push_back({.integrator = integrator, .n = n, .k_n = k_n});
-  };
-  if (quick) {
-    add(kPaperStiffness, kQuickLadder);
-  } else {
-    for (const double k_n : {1e5, kPaperStiffness, 1e7}) add(k_n, kLadder);
-  }
-  return all;
-}
 
 struct Measured {
   std::vector<WorkPrecision> all;
@@ -83,17 +61,17 @@ Measured measure(const CostOptions& options, const Common& common) {
   m.accuracy = options.accuracy.value_or(kAccuracy);
   {
     ProgressBar bar(common, "errors and times");
-    m.all = sim::work_precision(settings(options.quick), options.quick ? 1 : 3, bar);
+    m.all = sim::work_precision(sim::study_settings(options.quick), options.quick ? 1 : 3, bar);
   }
   m.reference = *std::find_if(m.all.begin(), m.all.end(),
                               [](const WorkPrecision& w) { return w.setting == kReference; });
   m.equal = sim::equal_accuracy(m.all, m.reference);
   m.equal_mean = sim::equal_accuracy(m.all, m.reference, true);
-  m.cheapest = sim::cheapest(m.all, kPaperStiffness, m.accuracy);
-  m.equal_impacts = sim::equal_impacts(sim::bed_impacts(), sim::impact_scene(), "verlet", "split", kSpinShare,
-                                       sim::kBedPhases);
+  m.cheapest = sim::cheapest(m.all, sim::kPaperStiffness, m.accuracy);
+  m.equal_impacts = sim::equal_impacts(sim::bed_impacts(), sim::impact_scene(), "verlet", "split",
+                                       sim::kComparedSpinError, sim::kBedPhases);
   std::vector<StepSetting> in_gas = {kReference};
-  for (const StepSetting& s : {m.equal.setting, StepSetting{.integrator = "verlet", .n = kLadder.front()}})
+  for (const StepSetting& s : {m.equal.setting, sim::longest_study_step()})
     if (std::find(in_gas.begin(), in_gas.end(), s) == in_gas.end()) in_gas.push_back(s);
   for (const StepSetting& s : in_gas) {
     ProgressBar bar(common, fmt::format("gas, {}, n = {:g}", s.integrator, s.n));
@@ -135,7 +113,7 @@ nlohmann::json as_json(const Measured& m) {
   nlohmann::json d;
   for (const WorkPrecision& w : m.all) d["settings"].push_back(as_json(w));
   for (const WorkPrecision& w : m.all) d["sliding"].push_back(as_json(w.setting, w.impacts));
-  for (const WorkPrecision& w : sim::front(m.all, kPaperStiffness)) d["front"].push_back(as_json(w));
+  for (const WorkPrecision& w : sim::front(m.all, sim::kPaperStiffness)) d["front"].push_back(as_json(w));
   for (const sim::GasTemperature& g : m.gas) {
     nlohmann::json one = as_json(g.setting);
     one["t_z"] = g.value;
@@ -153,7 +131,7 @@ nlohmann::json as_json(const Measured& m) {
   };
   d["equal_accuracy"] = ratio(m.equal);
   d["equal_mean_accuracy"] = ratio(m.equal_mean);
-  d["equal_impacts"] = {{"spin_share", kSpinShare},
+  d["equal_impacts"] = {{"spin_share", sim::kComparedSpinError},
                         {"verlet", as_json(m.equal_impacts.slow, m.equal_impacts.slow_errors)},
                         {"split", as_json(m.equal_impacts.fast, m.equal_impacts.fast_errors)},
                         {"step_ratio", m.equal_impacts.slow.n / m.equal_impacts.fast.n}};
@@ -203,7 +181,7 @@ std::string sliding_table(const Measured& m, const std::vector<WorkPrecision>& r
   return s + fmt::format(
                  "  For an rms error of the spin of {:g} %: verlet, n = {:.4g}; at least as accurate in e, "
                  "v_t' and R w': split, n = {:.3g}, {:.0f} times fewer steps\n",
-                 100 * kSpinShare, equal.slow.n, equal.fast.n, equal.slow.n / equal.fast.n);
+                 100 * sim::kComparedSpinError, equal.slow.n, equal.fast.n, equal.slow.n / equal.fast.n);
 }
 
 std::string as_text(const Measured& m) {
@@ -217,7 +195,7 @@ std::string as_text(const Measured& m) {
     const auto like = [&](const StepSetting& o) {
       return w.setting.integrator == o.integrator && w.setting.n == o.n;
     };
-    if (w.setting.k_n == kPaperStiffness)
+    if (w.setting.k_n == sim::kPaperStiffness)
       own.push_back(w);
     else if (like(m.reference.setting) || like(m.equal.setting))
       others.push_back(w);
@@ -225,8 +203,8 @@ std::string as_text(const Measured& m) {
   s += table(own);
   if (!others.empty()) s += "\nOther values of k_n\n" + table(others);
   s += fmt::format("\nFront, k_n = {:g}: no other setting is both faster and more accurate\n",
-                   kPaperStiffness) +
-       table(sim::front(m.all, kPaperStiffness));
+                   sim::kPaperStiffness) +
+       table(sim::front(m.all, sim::kPaperStiffness));
   s += sliding_table(m, own);
   s += "\nT_z of a driven gas, 40 beads, W = 20\n";
   for (const sim::GasTemperature& g : m.gas) {
@@ -308,7 +286,7 @@ analysis::Figure figure(const Measured& m) {
                           w.collision.restitution(), w.collision.sticking(), w.impacts.spin.rms, w.setting.n);
         }
       f.data += "\n\n";
-      const bool bold = k_n == kPaperStiffness;
+      const bool bold = k_n == sim::kPaperStiffness;
       for (std::size_t panel = 0; panel < clauses.size(); ++panel)
         clauses[panel] += fmt::format(
             "{}'{}.dat' index {} using 1:{} with linespoints pt {} ps {} lw {} lc rgb '{}' notitle",

@@ -149,7 +149,7 @@ class ContactLevels {
 
  private:
   [[nodiscard]] double radius(std::int32_t bead) const {
-    return info_.radius.empty() ? 0.5 : info_.radius[static_cast<std::size_t>(bead)];
+    return radius_of(info_.radius, static_cast<std::size_t>(bead));
   }
   const TrajectoryInfo& info_;
   std::vector<std::size_t> first_ = {0};  // of each frame, and behind the last
@@ -251,7 +251,7 @@ DrawnPage page_of(const TrajectorySource& source, const imaging::DrawJob& job, c
   if (job.colours.range) page.range = *job.colours.range;
   json data = {{"box", box_json(info.box)},
                {"beads", info.n_beads},
-               {"radius", info.radius.empty() ? json(0.5) : json(info.radius)},
+               {"radius", info.radius.empty() ? json(kUsualRadius) : json(info.radius)},
                {"numbers", numbers_of_frames},
                {"titles", titles},
                {"cells", cells},

@@ -168,8 +168,7 @@ void add_import(CLI::App& program, Common& common) {
   verb.add_option("--gravity", l.gravity, "Acceleration of gravity g")->capture_default_str();
   verb.add_option("--cell-origin", o->origin,
                   "Lower left inside corner of the cell, with the plate at its mean height: x y [z]; "
-                  "default: 0, along "
-                  "a period its beginning")
+                  "default: 0, along a period its beginning")
       ->expected(2, 3);
   verb.add_option("--cell-width", l.width,
                   "Distance of the side walls; default: up to the end of the box of the file");

@@ -51,7 +51,7 @@ void WatchedImport::watch_steps(const Frame& frame) {
 
 void WatchedImport::watch_doubles(const Frame& frame) {
   const double smallest =
-      info_.radius.empty() ? 0.5 : *std::min_element(info_.radius.begin(), info_.radius.end());
+      info_.radius.empty() ? kUsualRadius : *std::min_element(info_.radius.begin(), info_.radius.end());
   if (!(smallest > 0)) return;
   const std::size_t here = listed_again(frame.position, kSameBead * 2 * smallest);
   if (doubled_ == 0) doubled_step_ = frame.step;
@@ -87,8 +87,7 @@ std::vector<std::string> WatchedImport::doubts() const {
   if (doubled_ > 0)
     doubts.push_back(
         fmt::format("{}, the first in the frame of step {}, {} closer than {:g} diameters to another bead: "
-                    "are beads listed "
-                    "twice?",
+                    "are beads listed twice?",
                     counted(doubled_, "bead"), doubled_step_, doubled_ == 1 ? "lies" : "lie", kSameBead));
   if (jumps_ > 0)
     doubts.push_back(fmt::format(

@@ -42,8 +42,8 @@ void add_locating_options(CLI::App& verb, imaging::LocatingRequest& request) {
       ->excludes(bright);
   CLI::Option* flat = verb.add_option("--flat", request.flat,
                                       "Divide every frame by a flat field: a stack of the cell without "
-                                      "beads, or 'stack' for the light between "
-                                      "the back-lit beads of the stack itself; default: no flat field");
+                                      "beads, or 'stack' for the light between the back-lit beads of the "
+                                      "stack itself; default: no flat field");
   verb.add_option("--background", request.background,
                   "Picture of the cell without beads: every frame is divided by it, or with --bright it is "
                   "subtracted; default: none")

@@ -1,11 +1,13 @@
 #pragma once
 /// \file
-/// Medians of lists of numbers.
+/// Medians of lists of numbers, and a robust spread.
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace twincell {
@@ -17,6 +19,18 @@ T upper_median(std::vector<T> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+/// Robust spread: 1.4826 median |x - middle|, with the upper median. For a normal distribution about `middle`
+/// it estimates the standard deviation, of which the median deviation is 0.67449 = 1/1.4826. Outliers change
+/// it little if they are few.
+/// \param values without NaN
+/// \param middle centre of the distribution: 0 for residuals, otherwise usually the median of the values
+/// \returns >= 0, in the unit of the values; 0 if there are none
+inline double robust_spread(std::vector<double> values, double middle = 0) {
+  if (values.empty()) return 0;
+  for (double& x : values) x = std::abs(x - middle);
+  return 1.4826 * upper_median(std::move(values));
 }
 
 /// Upper median of the first n of a few values. Each value is compared with all others, vectorised and

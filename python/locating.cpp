@@ -365,10 +365,9 @@ void bind_locating(py::module_& module) {
       py::arg("threads") = 0, py::arg("callback") = py::none(),
       (std::string(header_text("calibration/drive/track_film.hpp", "track_film")) +
        "\n\nstack: as for `locate`; or a table of located beads, a DataFrame or the name of a CSV file, with "
-       "columns "
-       "frame, x, y and optionally radius or diameter, sigma_x, sigma_y, tracer. columns: names of columns "
-       "of a table "
-       "that are called otherwise, {\"x\": \"X\"}. picture_size: width and height of its frames, px.")
+       "columns frame, x, y and optionally radius or diameter, sigma_x, sigma_y, tracer. columns: names of "
+       "columns of a table that are called otherwise, {\"x\": \"X\"}. picture_size: width and height of its "
+       "frames, px.")
           .c_str());
 }
 

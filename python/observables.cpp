@@ -173,8 +173,7 @@ void bind_observables(py::module_& module) {
       py::arg("points"), py::arg("box") = py::none(), py::arg("neighbours") = "cutoff",
       py::arg("cutoff") = kCutoff, py::arg("cell_radius") = analysis::kCellRadius,
       ("Complex hexatic order psi6 = <exp(6 i phi)> of every bead (`bond_order`): phi is the angle of a bond "
-       "in the "
-       "plane (x, z). NaN for fewer than 2 bonds." +
+       "in the plane (x, z). NaN for fewer than 2 bonds." +
        bonds_text)
           .c_str());
   module.def(

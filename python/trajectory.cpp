@@ -12,6 +12,7 @@
 #include "core/error.hpp"
 #include "trajectory/box.hpp"
 #include "trajectory/ranges.hpp"
+#include "trajectory/wrapped_positions.hpp"
 
 namespace twincell::python {
 
@@ -282,29 +283,21 @@ void require_increasing(const std::vector<double>& times) {
                         fmt::format("is {:g} in frame {}; times must be finite and increase.", times[t], t));
 }
 
-/// Removes the jumps of beads that were wrapped into the periods of a box: all of them lie within it, and
-/// some step is longer than half a period.
+/// Unwraps positions along the periodic axes of a box by the rule of wrapped_positions.hpp.
 void unwrap(std::vector<Frame>& frames, const Box& box) {
-  for (const int axis : {0, 1, 2}) {
-    if (box.boundary[static_cast<std::size_t>(axis)] != Boundary::periodic) continue;
-    const double low = box.lower[axis], high = box.upper[axis], period = high - low;
-    bool inside = true, jumps = false;
-    for (std::size_t t = 0; t < frames.size(); ++t)
-      for (std::size_t i = 0; i < frames[t].position.size(); ++i) {
-        const double here = frames[t].position[i][axis];
-        inside = inside && !(here < low || here > high);
-        jumps = jumps || (t > 0 && std::abs(here - frames[t - 1].position[i][axis]) > period / 2);
-      }
-    if (!inside || !jumps) continue;
-    std::vector<double> last(frames.empty() ? 0 : frames.front().position.size(), std::nan(""));
-    for (Frame& frame : frames)
-      for (std::size_t i = 0; i < frame.position.size(); ++i) {
-        double& here = frame.position[i][axis];
-        if (!std::isfinite(here)) continue;
-        if (std::isfinite(last[i])) here = last[i] + std::remainder(here - last[i], period);
-        last[i] = here;
-      }
-  }
+  if (frames.empty()) return;
+  PositionExtent extent;
+  for (const Frame& frame : frames)
+    for (const Vec3& r : frame.position) extent.add(r);
+  Vec3 period = Vec3::Zero();
+  for (const int axis : {0, 1, 2})
+    if (const double length = box.size()[axis];
+        box.periodic(static_cast<Axis>(axis)) && extent.is_wrapped(axis, length))
+      period[axis] = length;
+  PeriodCounter periods(period, frames.front().position.size());
+  for (Frame& frame : frames)
+    for (std::size_t i = 0; i < frame.position.size(); ++i)
+      frame.position[i] = periods.unwrapped(i, frame.position[i]);
 }
 
 std::shared_ptr<Trajectory> from_arrays(const py::object& positions, const py::object& velocities,
@@ -450,8 +443,8 @@ void bind_trajectory(py::module_& module) {
   py::class_<Contacts>(
       module, "Contacts",
       "The contacts of every frame: contacts[t] is a read-only structured array over the memory of the "
-      "frame, sorted "
-      "by (i, j), with the fields i, j, overlap, normal (3), normal_force and tangential_force (3).")
+      "frame, sorted by (i, j), with the fields i, j, overlap, normal (3), normal_force and tangential_force "
+      "(3).")
       .def("__len__", [](const Contacts& c) { return c.trajectory->n_frames(); })
       .def(
           "__getitem__",
@@ -478,8 +471,7 @@ void bind_trajectory(py::module_& module) {
           py::arg("drive") = py::none(), py::arg("phases_per_cycle") = 0, py::arg("source") = "unknown",
           "A trajectory in memory, so that data of any origin can be analysed.\n\n"
           "positions: (frames, beads, 2) as (x, z) or (frames, beads, 3) as (x, y, z), sigma; NaN where a "
-          "bead "
-          "is missing. The other arguments are the columns of the same names: vectors have the shape of "
+          "bead is missing. The other arguments are the columns of the same names: vectors have the shape of "
           "positions, numbers of beads (beads,), numbers of frames (frames,). Without a box the cell is open "
           "on all sides. Arrays are copied.")
       .def("write", &write, py::arg("path"), header_text("trajectory/formats/h5md_file.hpp", "H5mdWriter"))

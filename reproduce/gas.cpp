@@ -329,8 +329,8 @@ std::vector<std::string> Gas::conditions() const {
       fmt::format("each point is one run; its seed is drawn from the master seed {} and its scene",
                   request_.seed),
       "contacts: linear spring, tension allowed; unless varied k_n = 1e6 m g/d, e = 0.9 for beads and walls, "
-      "rough: "
-      "dashpot with c_t = c_n and Coulomb slider without history, mu = 0.4; none of k_n, c_t is in the paper",
+      "rough: dashpot with c_t = c_n and Coulomb slider without history, mu = 0.4; none of k_n, c_t is in "
+      "the paper",
       "n = 6.37 steps per contact, split at contact entry and exit, where steps are taken; from W = 10 on "
       "beads fly from contact to contact and steps act only where three meet (docs/event_driven.md)",
       fmt::format("start: random, settled at rest, then moving with the plate; {} cycles discarded",

@@ -306,12 +306,10 @@ void add_measures(Reproduction& r, json& measured) {
   f.plot = fmt::format(
       "{3}set arrow 1 from first {0:.5f},graph 0 to first {0:.5f},first {1:.6f} nohead dt 2 lc rgb blue\n"
       "set label 1 'Γ = {0:.4f}' at first {0:.5f},graph 0.05 offset 0.7,0\n"
-      "plot {1:.6f} with lines {4} title 'σ/30', '{2}.dat' using 1:4 with lines lw "
-      "1.3 "
-      "lc rgb blue notitle, '' using 1:2 with points pt 7 ps 0.9 lc rgb blue title 'variance over "
-      "phases', "
-      "'' using 1:5 with lines lw 1.3 lc rgb vermilion notitle, '' using 1:3 with points pt 6 ps 0.9 lc rgb "
-      "vermilion title 'about the height at rest'\n",
+      "plot {1:.6f} with lines {4} title 'σ/30', '{2}.dat' using 1:4 with lines lw 1.3 lc rgb blue notitle, "
+      "'' using 1:2 with points pt 7 ps 0.9 lc rgb blue title 'variance over phases', '' using 1:5 with "
+      "lines lw 1.3 lc rgb vermilion notitle, '' using 1:3 with points pt 6 ps 0.9 lc rgb vermilion title "
+      "'about the height at rest'\n",
       gamma, analysis::kBouncingThreshold, f.name, analysis::figure_style::axes(strength, s_b),
       analysis::figure_style::kStated);
   f.caption =

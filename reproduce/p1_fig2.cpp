@@ -84,8 +84,7 @@ analysis::Figure figure_of(const Packings& all) {
     for (std::size_t i = 0; i < crystal->moment.frame.position.size(); ++i) {
       const Vec3& at = crystal->moment.frame.position[i];
       if (at.x() < kSide && at.z() < kSide)
-        f.data += fmt::format("{:.5f} {:.5f} {:g}\n", at.x(), at.z(),
-                              crystal->radius.empty() ? 0.5 : crystal->radius[i]);
+        f.data += fmt::format("{:.5f} {:.5f} {:g}\n", at.x(), at.z(), radius_of(crystal->radius, i));
     }
     f.data += "\n\n";
     const double left = 0.01 + 0.31 * index;
@@ -116,8 +115,7 @@ analysis::Figure figure_of(const Packings& all) {
         "set style fill solid border lc rgb '#333333'\n"
         "plot '{2}.dat' index {3} using 1:($2+$3+$4) with boxes lc rgb '{4}' notitle, '' index {3} using "
         "1:($2+$3) with boxes lc rgb '{5}' notitle, '' index {3} using 1:2 with boxes lc rgb '{6}' notitle, "
-        "1./3 "
-        "with lines {7} notitle, 2./3 with lines {7} notitle\n",
+        "1./3 with lines {7} notitle, 2./3 with lines {7} notitle\n",
         static_cast<double>(all.random.size()) + 0.7,
         analysis::figure_style::panel_title('c', fmt::format("random, N_l = {}", all.layers)), f.name, index,
         kB.colour, kBetween, kA.colour, analysis::figure_style::kStated);

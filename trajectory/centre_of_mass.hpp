@@ -18,7 +18,7 @@ inline double centre_of_mass_height(const Frame& frame, const std::vector<double
   double moment = 0, total = 0;
   for (std::size_t i = 0; i < frame.position.size(); ++i) {
     if (!frame.present(i) || !std::isfinite(frame.position[i].z())) continue;
-    const double m = mass.empty() ? 1 : mass[i];
+    const double m = mass_of(mass, i);
     moment += m * frame.position[i].z();
     total += m;
   }
@@ -33,7 +33,7 @@ inline std::optional<Vec3> centre_of_mass_velocity(const Frame& frame, const std
   double total = 0;
   for (std::size_t i = 0; i < frame.velocity.size(); ++i) {
     if (!frame.present(i) || !frame.velocity[i].allFinite()) continue;
-    const double m = mass.empty() ? 1.0 : mass[i];
+    const double m = mass_of(mass, i);
     momentum += m * frame.velocity[i];
     total += m;
   }

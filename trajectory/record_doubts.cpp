@@ -53,8 +53,7 @@ std::string doubt_of_clipping(const std::vector<double>& values) {
   if (at_low.runs + at_high.runs < kFewestRuns) return {};
   return fmt::format(
       "{:.2g} % of the values are exactly the largest or the smallest, in {} flat parts with sharp ends: was "
-      "the "
-      "range of the instrument exceeded?",
+      "the range of the instrument exceeded?",
       100 * static_cast<double>(at_low.values + at_high.values) / static_cast<double>(values.size()),
       at_low.runs + at_high.runs);
 }

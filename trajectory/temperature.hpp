@@ -24,7 +24,7 @@ inline Vec3 temperature_components(const Frame& frame, const std::vector<double>
   std::size_t n = 0;
   for (std::size_t i = 0; i < frame.velocity.size(); ++i)
     if (frame.present(i) && frame.velocity[i].allFinite()) {
-      sum += (mass.empty() ? 1.0 : mass[i]) * (frame.velocity[i] - *v_cm).cwiseAbs2();
+      sum += mass_of(mass, i) * (frame.velocity[i] - *v_cm).cwiseAbs2();
       ++n;
     }
   return sum / static_cast<double>(n);

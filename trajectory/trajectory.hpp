@@ -59,6 +59,22 @@ struct TrajectoryInfo {
   std::string tracking_json;         ///< report of the tracking of an experiment, JSON; empty if absent
 };
 
+/// Radius of a bead whose radius is not stored, sigma: the unit of length is the diameter of a bead.
+constexpr double kUsualRadius = 0.5;
+/// Radius of the bead of a slot, sigma. \param radius TrajectoryInfo::radius; empty: all kUsualRadius
+inline double radius_of(const std::vector<double>& radius, std::size_t slot) {
+  return radius.empty() ? kUsualRadius : radius[slot];
+}
+/// Mass of the bead of a slot, m. \param mass TrajectoryInfo::mass; empty: all 1
+inline double mass_of(const std::vector<double>& mass, std::size_t slot) {
+  return mass.empty() ? 1 : mass[slot];
+}
+
+/// Magnitude of the acceleration of gravity of a run, sigma/t0^2: that of its drive; 1 without a drive; 0 for
+/// a run that states its N_l and neither a Gamma nor a ramp: it has no gravity, as Drive cannot say. Runs of
+/// other programs state neither number.
+double gravity_of(const TrajectoryInfo& info);
+
 /// Granular temperature averaged over the time since the previous frame, m g sigma, per component as defined
 /// by temperature_components (temperature.hpp). It jumps when the bed lands, so that samples at a few phases
 /// per cycle would alias it. NaN where unknown, as before the first frame of a run.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <set>
 
 #include "core/counted.hpp"
 #include "core/error.hpp"
@@ -60,15 +59,13 @@ constexpr const char* kTaken = "report";
 /// Whether a folder contains cell files and no picture but that of each, as `new` writes it. A stack may
 /// contain its own CELL.toml and notes.
 bool is_folder_of_cells(const fs::path& folder) {
-  static const std::set<std::string> kPictures = {".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp", ".pgm"};
   std::error_code ec;
   if (!fs::is_directory(folder, ec) || fs::exists(folder / "CELL.toml", ec)) return false;
   bool cells = false;
   for (const auto& entry : fs::directory_iterator(folder, ec)) {
     fs::path file = entry.path();
     cells = cells || file.extension() == ".toml";
-    if (kPictures.contains(file.extension().string()) && !fs::exists(file.replace_extension(".toml"), ec))
-      return false;
+    if (imaging::has_picture_name(file) && !fs::exists(file.replace_extension(".toml"), ec)) return false;
   }
   return cells;
 }

@@ -130,9 +130,9 @@ double simulate(const sim::Scene& scene, const fs::path& output, const TwinProve
   // use the processor.
   const int worth = std::min(threads, sim::threads_for(start.beads.size(), 0));
   sim::Simulation run(scene, std::move(start), sim::SolverKind::best, worth);
-  const double height = mean_height(run.state().beads);
+  const double height = mean_height(run.system().beads);
   run.settle(progress);
-  const double fall = height - mean_height(run.state().beads);
+  const double fall = height - mean_height(run.system().beads);
   TrajectoryInfo info = run.trajectory_info();
   info.provenance_json = said;
   H5mdWriter writer(output, std::move(info));

@@ -142,7 +142,7 @@ class Stress : public Observable {
     const auto each = [&](auto&& visit) {
       for (std::size_t i = 0; i < frame.velocity.size(); ++i)
         if (frame.present(i) && frame.velocity[i].allFinite())
-          visit(info_.mass.empty() ? 1.0 : info_.mass[i], frame.velocity[i]);
+          visit(mass_of(info_.mass, i), frame.velocity[i]);
     };
     each([&](double m, const Vec3& v) { momentum += m * v, mass += m; });
     if (!(mass > 0)) return Tensor::Constant(std::numeric_limits<double>::quiet_NaN());

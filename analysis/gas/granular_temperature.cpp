@@ -243,7 +243,7 @@ class GranularTemperature : public Observable {
     for (std::size_t i = 0; i < frame.velocity.size(); ++i) {
       if (!frame.present(i) || !frame.velocity[i].allFinite() || !std::isfinite(frame.position[i].z()))
         continue;
-      const double m = info_.mass.empty() ? 1.0 : info_.mass[i], w = frame.velocity[i].z();
+      const double m = mass_of(info_.mass, i), w = frame.velocity[i].z();
       SlabSums& slab =
           field_[{frame.phase, static_cast<int>(std::floor(info_.box.wrap(frame.position[i]).z()))}];
       slab.n += 1;

@@ -61,7 +61,7 @@ class Profiles : public Observable {
     for (std::size_t i = 0; i < frame.position.size(); ++i) {
       if (!frame.present(i) || !frame.position[i].allFinite()) continue;
       const double z = frame.position[i].z() - foot_;
-      const double radius = info_.radius.empty() ? 0.5 : info_.radius[i];
+      const double radius = radius_of(info_.radius, i);
       const auto below = [&](double height) {
         return info_.box.dimension == 2 ? disc_below(radius, height) : sphere_below(radius, height);
       };
@@ -73,7 +73,7 @@ class Profiles : public Observable {
         under = up_to;
       }
       if (frame.velocity.empty() || !frame.velocity[i].allFinite()) continue;
-      const double mass = info_.mass.empty() ? 1 : info_.mass[i];
+      const double mass = mass_of(info_.mass, i);
       Slab& slab = slabs_[slab_of(static_cast<std::int64_t>(std::floor(z / thickness_)))];
       slab.w.add(mass, frame.velocity[i].z());
       slab.u.add(mass, frame.velocity[i].x());

@@ -23,7 +23,7 @@ class VolumeFraction : public Observable {
     double volume = 0, top = 0;
     for (std::size_t i = 0; i < frame.position.size(); ++i) {
       if (!frame.present(i) || !std::isfinite(frame.position[i].z())) continue;
-      const double r = info_.radius.empty() ? 0.5 : info_.radius[i];
+      const double r = radius_of(info_.radius, i);
       volume += flat ? std::numbers::pi * r * r : 4 * std::numbers::pi / 3 * r * r * r;
       top = std::max(top, frame.position[i].z() + r);
     }

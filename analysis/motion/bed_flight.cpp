@@ -142,7 +142,7 @@ class BedFlight : public Observable {
     before_.resize(frame.position.size(), kNaN);
     for (std::size_t i = 0; i < frame.position.size(); ++i) {
       const double z = frame.present(i) ? frame.position[i].z() : kNaN;
-      const double m = info_.mass.empty() ? 1 : info_.mass[i];
+      const double m = mass_of(info_.mass, i);
       if (std::isfinite(z - before_[i])) moved += m * (z - before_[i]), mass += m;
       before_[i] = z;
     }

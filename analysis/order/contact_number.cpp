@@ -13,7 +13,7 @@ class ContactNumber : public Observable {
  public:
   explicit ContactNumber(const AnalysisContext& context) : info_(context.info) {
     for (const double r : info_.radius) largest_ = std::max(largest_, r);
-    if (info_.radius.empty()) largest_ = 0.5;
+    if (info_.radius.empty()) largest_ = kUsualRadius;
   }
 
   void add(const FrameView& view) override {
@@ -28,7 +28,7 @@ class ContactNumber : public Observable {
       if (!frame.present(i) || !frame.position[i].allFinite()) continue;
       double touching = 0;
       near.for_each(i, [&](std::size_t j, const Vec3& bond) {
-        if (bond.norm() <= reach * (radius(i) + radius(j))) ++touching;
+        if (bond.norm() <= reach * (radius_of(info_.radius, i) + radius_of(info_.radius, j))) ++touching;
       });
       ++beads;
       contacts += touching;
@@ -59,8 +59,6 @@ class ContactNumber : public Observable {
   }
 
  private:
-  [[nodiscard]] double radius(std::size_t i) const { return info_.radius.empty() ? 0.5 : info_.radius[i]; }
-
   const TrajectoryInfo& info_;
   double largest_ = 0;  ///< radius, sigma
   BlockAverage all_, inside_;

@@ -206,7 +206,7 @@ void for_each_bead(const BeadPanel& p, const Visit& visit) {
   for (std::size_t i = 0; i < p.moment->frame.position.size(); ++i) {
     if (!p.moment->frame.present(i) || !p.moment->frame.position[i].allFinite()) continue;
     const Vec3 r = p.box.wrap(p.moment->frame.position[i]);
-    visit(r.x(), r.z() - p.moment->plate, p.radius.empty() ? 0.5 : p.radius[i], i);
+    visit(r.x(), r.z() - p.moment->plate, radius_of(p.radius, i), i);
   }
 }
 
@@ -591,8 +591,7 @@ Figure s_j_figure(const std::vector<Run>& runs) {
   const Range range = y.padded(0.05, 0.02);
   f.plot = fmt::format(
       "set multiplot layout 2,1\nset yrange [{}:{}]\nset xlabel 'cycle j since the first analysed'\nset "
-      "ylabel 's_j / σ'\nset lmargin "
-      "9\nset key outside right top vertical samplen 1.5 Left reverse\n"
+      "ylabel 's_j / σ'\nset lmargin 9\nset key outside right top vertical samplen 1.5 Left reverse\n"
       "{}unset multiplot\n",
       range.low, range.high, panels);
   f.caption =

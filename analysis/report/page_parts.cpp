@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <regex>
 
+#include "core/escape.hpp"
 #include "core/json_text.hpp"
 
 namespace twincell::analysis {
@@ -32,6 +34,12 @@ std::string base64(std::string_view bytes) {
 
 std::string_view page_style() {
   return embedded::page_css;
+}
+
+std::string typeset(const std::string& text) {
+  return std::regex_replace(
+      std::regex_replace(html_text(text), std::regex("\\b([sTNK])_([a-z])\\b"), "$1<sub>$2</sub>"),
+      std::regex("\\bq6\\b"), "q<sub>6</sub>");
 }
 
 std::string script_text(std::string_view script) {

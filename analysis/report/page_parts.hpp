@@ -11,6 +11,9 @@ namespace twincell::analysis {
 /// The style sheet of the program's pages (page.css).
 std::string_view page_style();
 
+/// `text` escaped for HTML, with names such as s_b and q6 set as symbols with a subscript.
+std::string typeset(const std::string& text);
+
 /// A script as the content of a script element, which a "</script" inside it does not end.
 std::string script_text(std::string_view script);
 

@@ -175,7 +175,7 @@ Figure lattice_figure(const Frame& frame, const TrajectoryInfo& info, const Anal
   for (std::size_t i = 0; i < frame.position.size(); ++i) {
     if (!frame.present(i) || !frame.position[i].allFinite() || frame.position[i].z() > high) continue;
     const Vec3 r = info.box.wrap(frame.position[i]);
-    const double radius = info.radius.empty() ? 0.5 : info.radius[i];
+    const double radius = radius_of(info.radius, i);
     const std::size_t style = style_of(order.psi6[i], order.angle[i]);
     const std::size_t coordination = cells.enclosed[i] != 0 ? cells.neighbours.count(i) : 0;
     data += fmt::format("{:.5f} {:.5f} {:.4g} {} {}\n", r.x(), r.z(), radius, style, coordination);

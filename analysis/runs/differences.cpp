@@ -150,7 +150,7 @@ std::optional<double> Difference::seed_error() const {
 
 std::optional<double> Difference::in_errors() const {
   const auto e = error();
-  if (!e || *e <= 0 || !without_error.empty()) return std::nullopt;
+  if (!e || *e <= 0 || without_error) return std::nullopt;
   return remainder() / *e;
 }
 
@@ -169,8 +169,9 @@ std::string Difference::attribution() const {
   const double size = std::abs(difference());
   if (size == 0 && remainder() == 0) return "none: the same on both sides";
   const auto t = in_errors();
-  if (!without_error.empty())
-    return fmt::format("the error of the {} is not known, so that no conclusion is possible", without_error);
+  if (without_error)
+    return fmt::format("the error of the {} is not known, so that no conclusion is possible",
+                       side_name(*without_error));
   if (!t) return "no error is known, so that no conclusion is possible";
   std::string by_camera;
   if (const auto share = camera_share())
@@ -255,9 +256,9 @@ std::vector<Difference> find_differences(const std::vector<Run>& runs, const std
       compare_simulations(runs, match, d);
       // The scatter between seeds contains that within a simulation.
       if (!experiment->error && (other_error || d.seeds || d.tracers))
-        d.without_error = "experiment";
+        d.without_error = Side::experiment;
       else if (experiment->error && !other_error && !d.seeds)
-        d.without_error = "simulation";
+        d.without_error = Side::simulation;
       differences.push_back(std::move(d));
     }
   }

@@ -29,15 +29,14 @@ struct Measured {
 struct Difference {
   std::size_t match = 0;  ///< index of the match
   std::string quantity, unit;
-  Measured experiment, simulation;   ///< means over the match's runs
-  std::optional<double> filmed;      ///< F
-  std::optional<double> camera;      ///< F - S, from the run that was filmed
-  std::optional<double> statistics;  ///< standard error of E - F (or E - S) from the intervals of both
-  std::string
-      without_error;  ///< "experiment" or "simulation", if the error of this side is missing in error()
-  std::optional<double> seeds;    ///< largest standard deviation between simulations of one start
-  std::size_t seed_runs = 0;      ///< simulations of that start
-  std::optional<double> tracers;  ///< standard deviation of E - S over three lines of tracers
+  Measured experiment, simulation;    ///< means over the match's runs
+  std::optional<double> filmed;       ///< F
+  std::optional<double> camera;       ///< F - S, from the run that was filmed
+  std::optional<double> statistics;   ///< standard error of E - F (or E - S) from the intervals of both
+  std::optional<Side> without_error;  ///< the side whose error is missing in error(), if one is
+  std::optional<double> seeds;        ///< largest standard deviation between simulations of one start
+  std::size_t seed_runs = 0;          ///< simulations of that start
+  std::optional<double> tracers;      ///< standard deviation of E - S over three lines of tracers
   std::optional<double> defects;  ///< largest difference between the means of simulations of different starts
 
   [[nodiscard]] double difference() const { return experiment.value - simulation.value; }

@@ -50,7 +50,7 @@ BeadWalls walls_from_beads(const TrajectorySource& trajectory) {
     const double plate = std::isfinite(frame.plate_height) ? frame.plate_height : 0;
     for (std::size_t i = 0; i < info.n_beads; ++i) {
       if (!frame.present(i) || !std::isfinite(frame.position[i].x())) continue;
-      const double r = info.radius.empty() ? 0.5 : info.radius[i], x = frame.position[i].x(),
+      const double r = radius_of(info.radius, i), x = frame.position[i].x(),
                    z = frame.position[i].z() - plate;
       auto& slices = x < middle ? left : right;
       slices[std::lround(std::floor(z / kSlice))].emplace_back(z, x < middle ? x - r : x + r);

@@ -1,97 +1,24 @@
 #include "calibration/camera/cell_geometry.hpp"
 
 #include <ceres/ceres.h>
-#include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
 
+#include "calibration/camera/edge_lines.hpp"
 #include "calibration/fit/outliers.hpp"
 #include "core/constants.hpp"
 #include "core/error.hpp"
-#include "core/in_parallel.hpp"
 #include "core/median.hpp"
-#include "imaging/settings/auto_configuration.hpp"
-#include "imaging/stack/open_frames.hpp"
-#include "imaging/stack/repeated_frames.hpp"
 
 namespace twincell::calibration {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::size_t kWallFrames = 40;  // frames in which the walls are searched
 constexpr std::size_t kPlateFrames =
-    40;                             // frames whose plate points enter the fit of rotation and distortion
-constexpr double kWindow_px = 0.6;  // width of the window in which points belong to one edge
-
-/// An edge point in the edge's coordinates: u along, v across the edge; v increases towards the cell's
-/// interior.
-struct Along {
-  double u, v;
-};
-
-/// v = offset + slope u.
-struct Line {
-  double slope = 0, offset = 0;
-  std::size_t support = 0;
-  [[nodiscard]] double distance(const Along& p) const { return p.v - offset - slope * p.u; }
-};
-
-/// Median and count of the outermost window of width kWindow_px that contains at least `need` of the sorted
-/// values; {0, 0} if there is no such window.
-std::pair<double, std::size_t> outermost(const std::vector<double>& sorted, std::size_t need) {
-  for (std::size_t a = 0, b = 0; a < sorted.size(); ++a) {
-    b = std::max(b, a);
-    while (b < sorted.size() && sorted[b] <= sorted[a] + kWindow_px) ++b;
-    if (b - a < need) continue;
-    // The first window with enough points may contain only the outer half of the edge, so take the fullest
-    // window that begins within one window width of it.
-    std::size_t best = b - a, at = a;
-    for (std::size_t c = a, e = b; c < sorted.size() && sorted[c] <= sorted[a] + kWindow_px; ++c) {
-      while (e < sorted.size() && sorted[e] <= sorted[c] + kWindow_px) ++e;
-      if (e - c > best) best = e - c, at = c;
-    }
-    return {sorted[at + best / 2], best};
-  }
-  return {0, 0};
-}
-
-/// Outermost line that at least `share` of the points follow, by a scan over slopes within +-steepest.
-std::optional<Line> outermost_line(std::vector<Along> points, double steepest, double share) {
-  constexpr std::size_t kMost = 400;
-  if (points.size() > kMost) {
-    std::vector<Along> thinned;
-    for (std::size_t i = 0; i < kMost; ++i) thinned.push_back(points[i * points.size() / kMost]);
-    points = std::move(thinned);
-  }
-  const auto need =
-      std::max<std::size_t>(4, static_cast<std::size_t>(share * static_cast<double>(points.size())));
-  if (points.size() < need) return std::nullopt;
-  double middle = 0, reach = 1;
-  for (const Along& p : points) middle += p.u / static_cast<double>(points.size());
-  for (const Along& p : points) reach = std::max(reach, std::abs(p.u - middle));
-  const double step = 0.5 * kWindow_px / reach;
-  Line best;
-  std::vector<double> r(points.size());
-  for (double slope = -steepest; slope <= steepest; slope += step) {
-    for (std::size_t i = 0; i < points.size(); ++i) r[i] = points[i].v - slope * (points[i].u - middle);
-    std::sort(r.begin(), r.end());
-    const auto [offset, support] = outermost(r, need);
-    // If two slopes have equal support, take the less steep line.
-    if (support > best.support || (support == best.support && std::abs(slope) < std::abs(best.slope)))
-      best = {slope, offset - slope * middle, support};
-  }
-  if (best.support < need) return std::nullopt;
-  return best;
-}
-
-double spread_of(std::vector<double> r) {
-  for (double& x : r) x = std::abs(x);
-  return r.empty() ? 0 : 1.4826 * upper_median(std::move(r));
-}
+    40;  // frames whose plate points enter the fit of rotation and distortion
 
 /// Position of a picture point in the ideal picture: the formulas of Lens, templated for Ceres.
 template <class T>
@@ -171,90 +98,6 @@ ceres::CostFunction* cost_of(Functor* functor, std::size_t parameters, std::size
   return cost;
 }
 
-Along along_of(const imaging::PixelPoint& p, int side) {
-  return side == 0 ? Along{p.y_px, p.x_px} : side == 1 ? Along{p.y_px, -p.x_px} : Along{p.x_px, -p.y_px};
-}
-
-/// Position of a wall in one picture row, averaged over `frames` frames.
-struct WallRow {
-  imaging::PixelPoint at;
-  double frames = 1;
-  std::vector<std::size_t> seen = {};  // these frames; beads and plate hide a row at some phases
-  double floor = 0;                    // mean row of the plate in these frames, ideal picture
-};
-
-/// One point per picture row: the mean over the frames of the points on the wall.
-std::vector<WallRow> rows_of_wall(const std::vector<std::vector<imaging::EdgePoint>>& frames, int side) {
-  constexpr double kSteepest = 0.25;
-  std::vector<Along> all;
-  for (const auto& frame : frames)
-    for (const imaging::EdgePoint& p : frame) all.push_back(along_of(p.at, side));
-  const auto line = outermost_line(all, kSteepest, 0.05);
-  std::vector<WallRow> rows;
-  if (!line) return rows;
-  // Distortion curves the wall, so a parabola is fitted in a window that narrows with each round.
-  Eigen::Vector3d bend(line->offset, line->slope, 0);
-  double middle = 0;
-  const auto distance = [&](const Along& p) {
-    const double u = p.u - middle;
-    return p.v - bend[0] - bend[1] * u - bend[2] * u * u;
-  };
-  double u_sum = 0;
-  for (const Along& p : all) u_sum += p.u;
-  middle = u_sum / static_cast<double>(all.size());
-  bend[0] += bend[1] * middle;
-  double window = 4 * kWindow_px;
-  for (int round = 0; round < 6; ++round) {
-    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
-    std::vector<double> r;
-    for (const Along& p : all) {
-      if (std::abs(distance(p)) > window) continue;
-      const Eigen::Vector3d b(1, p.u - middle, (p.u - middle) * (p.u - middle));
-      normal += b * b.transpose();
-      right += p.v * b;
-    }
-    bend = normal.ldlt().solve(right);
-    for (const Along& p : all)
-      if (std::abs(distance(p)) <= window) r.push_back(distance(p));
-    if (r.size() < 8) break;
-    window = std::clamp(kWorstSigma * spread_of(r), 0.05, window);
-  }
-  std::map<int, WallRow> sums;
-  for (std::size_t f = 0; f < frames.size(); ++f)
-    for (const imaging::EdgePoint& p : frames[f]) {
-      if (std::abs(distance(along_of(p.at, side))) > window) continue;
-      WallRow& row = sums.try_emplace(static_cast<int>(p.at.y_px), WallRow{.at = {0, p.at.y_px}, .frames = 0})
-                         .first->second;
-      row.at.x_px += p.at.x_px;
-      row.seen.push_back(f);
-      ++row.frames;
-    }
-  for (auto& [y, row] : sums) {
-    // Skip rows that are detected in less than a quarter of the frames: beads hide them most of the time.
-    if (row.frames * 4 < static_cast<double>(frames.size())) continue;
-    row.at.x_px /= row.frames;
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
-/// Points of the plate's edge in one frame: those within `window` of the outermost line with the given slope.
-std::vector<imaging::PixelPoint> on_plate(const std::vector<imaging::EdgePoint>& frame, double slope,
-                                          double window) {
-  std::vector<double> r;
-  for (const imaging::EdgePoint& p : frame) r.push_back(along_of(p.at, 2).v - slope * p.at.x_px);
-  std::vector<double> sorted = r;
-  std::sort(sorted.begin(), sorted.end());
-  const auto [offset, support] = outermost(
-      sorted, std::max<std::size_t>(3, static_cast<std::size_t>(0.03 * static_cast<double>(r.size()))));
-  std::vector<imaging::PixelPoint> points;
-  if (support == 0) return points;
-  for (std::size_t i = 0; i < r.size(); ++i)
-    if (std::abs(r[i] - offset) < window) points.push_back(frame[i].at);
-  return points;
-}
-
 /// Height of the plate in the ideal picture, with its standard error from the scatter of the points.
 PlateSighting sighting(const std::vector<imaging::PixelPoint>& points, double rotation_deg, double k1,
                        cv::Size size) {
@@ -269,7 +112,7 @@ PlateSighting sighting(const std::vector<imaging::PixelPoint>& points, double ro
   const double middle = upper_median(rows);
   std::vector<double> r;
   for (const double z : rows) r.push_back(z - middle);
-  const double width = std::max(0.02, 3 * spread_of(r));
+  const double width = std::max(0.02, 3 * robust_spread(r));
   double sum = 0, squares = 0, n = 0;
   for (const double z : rows)
     if (std::abs(z - middle) < width) sum += z, squares += (z - middle) * (z - middle), ++n;
@@ -335,89 +178,13 @@ double CellGeometry::width_error_px() const {
   return std::sqrt(fit.covariance(l, l) + fit.covariance(r, r) - 2 * fit.covariance(l, r));
 }
 
-double diameter_for_edges(const std::filesystem::path& stack, bool bright, double known_px) {
-  constexpr double kUsual_px = 15;
-  if (known_px > 0) return known_px;
-  cv::Mat first;
-  const double found =
-      imaging::open_frames(stack)->next(first) ? imaging::estimate_diameter(first, {.bright = bright}) : 0;
-  return found > 0 ? found : kUsual_px;
-}
-
-std::optional<double> frame_rate_of(std::optional<double> stated, const StackEdges& edges,
-                                    const std::filesystem::path& stack, const imaging::FrameRange& range) {
-  const auto step = static_cast<double>(range.step);
-  if (stated) return *stated / step;
-  const auto& t = edges.time_s;
-  if (t.size() > 1 && t.back() > t.front()) return static_cast<double>(t.size() - 1) / (t.back() - t.front());
-  const imaging::StackInfo info = imaging::open_frames(stack)->info();
-  if (info.playback || !info.frame_rate_hz) return {};
-  return *info.frame_rate_hz / step;
-}
-
-StackEdges read_stack_edges(imaging::FrameSource& frames, bool bright, double diameter_px, int threads,
-                            Progress& progress) {
-  StackEdges out;
-  const std::size_t stride = std::max<std::size_t>(1, frames.announced() / kWallFrames);
-  out.stride = stride;
-  out.diameter_px = diameter_px;
-  const auto batch_size = static_cast<std::size_t>(std::max(1, threads)) * 2;
-  std::vector<double> blurs;
-  bool stamped = true;
-  std::size_t done = 0;
-  imaging::RepeatedFrames repeated;
-  for (bool more = true; more;) {
-    std::vector<cv::Mat> batch;
-    for (cv::Mat frame; batch.size() < batch_size && (more = frames.next(frame)); frame = cv::Mat()) {
-      batch.push_back(frame);
-      repeated.add(frame);
-      if (const auto t = frames.time_s(); t && stamped)
-        out.time_s.push_back(*t);
-      else
-        stamped = false;
-    }
-    std::vector<imaging::CellEdges> found(batch.size());
-    in_parallel(batch.size(), threads,
-                [&](std::size_t i) { found[i] = imaging::find_cell_edges(batch[i], bright, diameter_px); });
-    for (std::size_t i = 0; i < batch.size(); ++i, ++done) {
-      out.size = batch[i].size();
-      if (done % stride == 0) {
-        out.left.push_back(std::move(found[i].left));
-        out.right.push_back(std::move(found[i].right));
-      }
-      out.plate.push_back(std::move(found[i].plate));
-      if (found[i].blur_px > 0) blurs.push_back(found[i].blur_px);
-    }
-    progress.update(static_cast<std::int64_t>(done), static_cast<std::int64_t>(frames.announced()));
-  }
-  if (done == 0) throw InputError(Where{.file = frames.current(), .key = {}}, "holds no frame.");
-  out.repeats = repeated.repeats();
-  if (!stamped) out.time_s.clear();
-  if (!blurs.empty()) out.blur_px = upper_median(blurs);
-  return out;
-}
-
 namespace {
-
-/// Slope of the plate's edge: the median over frames. A row of beads above a visible plate is never the
-/// outermost line. Absent if the plate is not seen.
-std::optional<double> plate_slope(const StackEdges& edges, std::size_t stride) {
-  constexpr double kSteepestPlate = 0.1, kShare = 0.03;
-  std::vector<double> slopes;
-  for (std::size_t f = 0; f < edges.plate.size(); f += stride) {
-    std::vector<Along> points;
-    for (const imaging::EdgePoint& p : edges.plate[f]) points.push_back(along_of(p.at, 2));
-    if (const auto line = outermost_line(points, kSteepestPlate, kShare)) slopes.push_back(line->slope);
-  }
-  if (slopes.empty()) return std::nullopt;
-  return upper_median(slopes);
-}
 
 /// The edges of a cell and the parameters that are fitted to them. The steps are in the order of their use.
 class GeometryFit {
  public:
   GeometryFit(const StackEdges& edges, bool with_distortion)
-      : edges_(edges), size_(edges.size), window_(with_distortion ? 3 * kWindow_px : kWindow_px) {
+      : edges_(edges), size_(edges.size), window_(with_distortion ? 3 * kEdgeWindow_px : kEdgeWindow_px) {
     choose_points();
     choose_parameters(with_distortion);
   }
@@ -518,7 +285,7 @@ double mean_x(const std::vector<WallRow>& wall) {
 void GeometryFit::choose_points() {
   constexpr std::size_t kFewestRows = 8;  // of a wall
   const std::size_t stride = std::max<std::size_t>(1, edges_.plate.size() / kPlateFrames);
-  const std::optional<double> slope = plate_slope(edges_, stride);
+  const std::optional<double> slope = plate_slope(edges_.plate, stride);
   has_plate_ = slope.has_value();
   slope_ = slope.value_or(0);
   for (std::size_t f = 0; f < edges_.plate.size(); f += stride) all_.plate.push_back(plate_points(f));
@@ -598,7 +365,7 @@ void GeometryFit::reject_wall_outliers(const std::vector<WallRow>& wall, bool le
   double& error = error_[left ? 0 : 1];
   std::vector<double> r;
   for (const WallRow& row : wall) r.push_back(wall_residual(row, left) * std::sqrt(row.frames));
-  error = std::max(1e-3, spread_of(r));
+  error = std::max(1e-3, robust_spread(r));
   for (std::size_t i = 0; i < r.size(); ++i)
     if (std::abs(r[i]) < kWorstSigma * error) kept.push_back(wall[i]);
 }
@@ -608,7 +375,7 @@ void GeometryFit::reject_plate_outliers() {
   std::vector<double> pooled;
   for (const auto& frame : all_.plate)
     for (const double r : plate_residuals(frame)) pooled.push_back(r);
-  error_[2] = std::max(1e-3, spread_of(pooled));
+  error_[2] = std::max(1e-3, robust_spread(pooled));
   for (const auto& frame : all_.plate) {
     const auto r = plate_residuals(frame);
     kept_.plate.emplace_back();

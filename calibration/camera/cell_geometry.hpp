@@ -9,16 +9,13 @@
 /// Tilts count outward, as cell.side_tilt of a scene, and the feet of the walls move with the plate. The
 /// rotation is that of the plate. All three edges contribute to the distortion k1.
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "calibration/camera/stack_edges.hpp"
 #include "calibration/fit/fit.hpp"
-#include "core/progress.hpp"
-#include "imaging/cell/cell_edges.hpp"
-#include "imaging/stack/chosen_frames.hpp"
-#include "imaging/stack/frame_source.hpp"
+#include "imaging/geometry/pixel_point.hpp"
 
 namespace twincell::calibration {
 
@@ -30,30 +27,6 @@ inline constexpr double kEdgeModelError_px = 0.002;
 /// Systematic error of the plate's heights in px. It is larger because beads leave the plate and land on it
 /// at the same phases of every cycle.
 inline constexpr double kHeightModelError_px = 0.004;
-
-/// Edges of a whole stack: the plate in every frame, the walls in about forty frames.
-struct StackEdges {
-  cv::Size size;
-  std::vector<std::vector<imaging::EdgePoint>> plate;        ///< [frames]
-  std::vector<std::vector<imaging::EdgePoint>> left, right;  ///< [frames 0, stride, 2 stride ...]
-  std::size_t stride = 1;
-  std::vector<std::uint8_t> repeats;  ///< [frames] as imaging::RepeatedFrames::repeats
-  std::vector<double> time_s;         ///< camera time stamp of each frame; empty if the stack has none
-  double blur_px = 0;                 ///< median over frames
-  double diameter_px = 15;            ///< bead diameter: the correlation length of errors along an edge
-};
-/// Bead diameter for the edge detection, px: the known one, else an estimate from the first frame, else 15
-/// px.
-double diameter_for_edges(const std::filesystem::path& stack, bool bright, double known_px);
-/// Frames per second: as the user states them, else from the camera's time stamps, else from the stack's
-/// metadata. The playback rate of a video does not count. Empty if no source gives a frame rate.
-/// \param range the frames of the stack that `edges` are of; the rate is that of these frames
-std::optional<double> frame_rate_of(std::optional<double> stated, const StackEdges& edges,
-                                    const std::filesystem::path& stack,
-                                    const imaging::FrameRange& range = {});
-/// Finds the edges in every frame; reads the stack once. \throws InputError as FrameSource
-StackEdges read_stack_edges(imaging::FrameSource& frames, bool bright, double diameter_px, int threads,
-                            Progress& progress = Progress::none());
 
 /// Distance of an edge point from the fitted edge, for the residual map.
 struct EdgeResidual {

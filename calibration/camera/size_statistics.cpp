@@ -18,12 +18,6 @@
 namespace twincell::calibration {
 namespace {
 
-double median_spread(const std::vector<double>& v, double middle) {
-  std::vector<double> r;
-  for (const double x : v) r.push_back(std::abs(x - middle));
-  return 1.4826 * upper_median(r);
-}
-
 /// Mode of a small sample by repeated halving: keep the shortest interval that contains half of the values
 /// (Robertson & Cryer 1974).
 double half_sample_mode(std::vector<double> v) {
@@ -81,7 +75,7 @@ std::optional<Estimate> touching(const std::vector<double>& pairs, double diamet
     if (r < mode) below.push_back(mode - r);
   if (below.size() < kFewestPairs / 2) return std::nullopt;
   // Distances below the mode contain no gaps, so only they give the noise.
-  const double width = std::max(1e-4 * diameter, 1.4826 * upper_median(below));
+  const double width = std::max(1e-4 * diameter, robust_spread(below));
   const double low = mode - kBelow * width, high = mode + std::max(kBelow * width, kAbove * diameter),
                bin = kBin * width;
   std::vector<double> counts(static_cast<std::size_t>(std::ceil((high - low) / bin)));
@@ -280,13 +274,13 @@ SizeStatistics count_beads(const BeadFrames& beads) {
                      fmt::format("{} beads are too few to measure.", diameters.size()));
   noise /= static_cast<double>(diameters.size());
   c.count.value = upper_median(counts);
-  c.count.error = counts.size() > 1 ? 1.2533 * median_spread(counts, c.count.value) /
+  c.count.error = counts.size() > 1 ? 1.2533 * robust_spread(counts, c.count.value) /
                                           std::sqrt(static_cast<double>(counts.size()))
                                     : kNaN;
 
   // Mean and variance, without false detections and half-hidden discs, whose diameters are outliers.
   const double middle = upper_median(diameters),
-               width = std::max(median_spread(diameters, middle), 1e-6 * middle);
+               width = std::max(robust_spread(diameters, middle), 1e-6 * middle);
   double sum = 0, squares = 0, cubes = 0, n = 0;
   for (const double d : diameters) {
     if (std::abs(d - middle) > 5 * width) continue;

@@ -25,8 +25,7 @@ analysis::Figure size_statistics_figure(const SizeStatistics& census, double uni
     f.data += fmt::format("{:.6g} {}\n", low + (static_cast<double>(b) + 0.5) * width, counts[b]);
   f.plot = fmt::format(
       "set xlabel 'diameter, {}'\nset ylabel 'discs'\nset yrange [0:*]\nset boxwidth {:.6g}\nset style fill "
-      "solid 0.6 "
-      "border\nset arrow from {:.6g}, graph 0 to {:.6g}, graph 1 nohead lw 2 lc rgb vermilion\n"
+      "solid 0.6 border\nset arrow from {:.6g}, graph 0 to {:.6g}, graph 1 nohead lw 2 lc rgb vermilion\n"
       "plot 'beads.dat' using 1:2 with boxes lc rgb blue notitle\n",
       px ? "px" : "σ", width, census.diameter.value * unit, census.diameter.value * unit);
   f.caption = fmt::format("{} in {}; the line is the mean", counted(census.sizes, "disc"),

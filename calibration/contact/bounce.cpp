@@ -129,8 +129,7 @@ double noise_of(std::vector<double> residuals, const std::vector<BounceSample>& 
 
 /// Robust standard deviation of residuals, at least 1e-12.
 double scale_of(std::vector<double> r) {
-  for (double& x : r) x = std::abs(x);
-  return std::max(1.4826 * upper_median(std::move(r)), 1e-12);
+  return std::max(robust_spread(std::move(r)), 1e-12);
 }
 
 /// Scatter of neighbouring heights about a smooth curve, from third differences: impacts are too few to show.

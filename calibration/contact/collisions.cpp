@@ -13,14 +13,6 @@
 namespace twincell::calibration {
 namespace {
 
-/// Acceleration of gravity of a trajectory, reduced units. A simulation without gravity states no Gamma,
-/// unless its drive changes.
-double gravity_of(const TrajectoryInfo& info) {
-  if (!info.drive) return 1;
-  const bool none = info.source == "simulation" && !info.conditions.gamma && !info.drive->ramp;
-  return none ? 0 : info.drive->gravity;
-}
-
 /// Time in [0, longest] at which two discs in uniform relative motion touch; none if they do not.
 std::optional<double> meeting(const Vec3& r, const Vec3& v, double reach, double longest) {
   const double b = r.dot(v), c = r.squaredNorm() - reach * reach, a = v.squaredNorm();
@@ -71,8 +63,7 @@ class Finder {
     v.z() -= gravity_ * 0.5 * dt;  // from the interval's middle to this end; dt < 0 after the collision
     return v;
   }
-  [[nodiscard]] double radius(std::size_t i) const { return info_.radius.empty() ? 0.5 : info_.radius[i]; }
-  [[nodiscard]] double mass(std::size_t i) const { return info_.mass.empty() ? 1 : info_.mass[i]; }
+  [[nodiscard]] double radius(std::size_t i) const { return radius_of(info_.radius, i); }
   [[nodiscard]] static bool there(const Frame& f, std::size_t i) {
     return f.present(i) && std::isfinite(f.position[i].x());
   }
@@ -120,7 +111,7 @@ class Finder {
     const double approach = -u.dot(n);
     if (!(approach > options_.least_speed)) return;
     ++found_.pairs;
-    const double mi = mass(i), mk = mass(k);
+    const double mi = mass_of(info_.mass, i), mk = mass_of(info_.mass, k);
     const Vec3 kick = flat((mi * (w[i] - v[i]) + mk * (w[k] - v[k])) / (mi + mk)) + Vec3(0, 0, gravity_ * dt);
     if (kick.norm() > options_.largest_kick * approach) {
       ++found_.crowded;

@@ -16,11 +16,6 @@
 namespace twincell::calibration {
 namespace {
 
-double spread_of(std::vector<double> r, double middle) {
-  for (double& x : r) x = std::abs(x - middle);
-  return 1.4826 * upper_median(std::move(r));
-}
-
 struct Branches {
   double psi_1, psi_2, reach, error;  // reach: (1 + e)(1 + 1/K)
   template <class T>
@@ -89,7 +84,7 @@ void fit_tangential(const std::vector<Impact>& impacts, double shape, WaltonFit&
       Branches{q.psi_1, q.psi_2, reach, q.error}(out.tangential.values.data(), &value);
       r.push_back(value);
     }
-    const double width = kWorstSigma * std::max(spread_of(r, 0), 1e-12);
+    const double width = kWorstSigma * std::max(robust_spread(r), 1e-12);
     kept.clear();
     for (std::size_t i = 0; i < points.size(); ++i)
       if (std::abs(r[i]) <= width) kept.push_back(points[i]);
@@ -131,7 +126,7 @@ WaltonFit fit_walton(const std::vector<Impact>& impacts, double shape) {
   std::vector<double> e;
   for (const Impact& i : finite) e.push_back(i.restitution);
   const double middle = upper_median(e),
-               width = std::max(spread_of(e, middle), 1e-12 * std::abs(middle) + 1e-15);
+               width = std::max(robust_spread(e, middle), 1e-12 * std::abs(middle) + 1e-15);
   const bool known =
       std::all_of(finite.begin(), finite.end(), [](const Impact& i) { return i.restitution_error > 0; });
   std::vector<Impact> kept;

@@ -248,8 +248,8 @@ std::string contradiction_of(const std::vector<BedSteps::Step>& steps, const Dri
       fall.acceleration < -most - kErrors * fall.error)
     return fmt::format(
         "the bed is accelerated downwards by {:.2g} +- {:.1g} g at phase {}, more than gravity and a plate "
-        "with Gamma = "
-        "{:.3g} can do: the picture is upside down, or the scale, the frame rate or the frequency is wrong",
+        "with Gamma = {:.3g} can do: the picture is upside down, or the scale, the frame rate or the "
+        "frequency is wrong",
         -fall.acceleration, fall.error, fall.phase, drive.gamma());
   return {};
 }

@@ -24,7 +24,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kSearched = 2000;  // samples of the periodogram
-constexpr double kSuspicious = 0.01;     // largest p of a second harmonic that is reported as significant
+constexpr double kSuspiciousHarmonic =
+    0.01;  // largest p of a second harmonic that is reported as significant
 
 struct Sample {
   double t, z;
@@ -56,11 +57,6 @@ double residual_of(const Sample& s, double middle, bool second, const std::vecto
   else
     Motion<false>{s.t - middle, s.z}(p.data(), &r);
   return r;
-}
-
-double spread_of(std::vector<double> r) {
-  for (double& x : r) x = std::abs(x);
-  return 1.4826 * upper_median(std::move(r));
 }
 
 /// Heights with outliers clamped, because a periodogram has no robust loss function.
@@ -128,7 +124,7 @@ std::vector<double> robust_start(const std::vector<Sample>& all, double omega, d
     r.reserve(part.size());
     for (const Sample& s : part) r.push_back(residual_of(s, middle, false, p));
     for (int round = 0; round < 3; ++round) {
-      const double scale = std::max(spread_of(r), 1e-9 * std::max(1.0, p[1]));
+      const double scale = std::max(robust_spread(r), 1e-9 * std::max(1.0, p[1]));
       ceres::Problem problem;
       for (const Sample& s : part)
         problem.AddResidualBlock(cost_of(s, middle, second), new ceres::CauchyLoss(scale), p.data());
@@ -160,10 +156,10 @@ Scatter scatter_of(const std::vector<Sample>& all, const Fitted& f, const std::v
     (c * c < 0.5 ? slow : fast).push_back(residuals[i]);
   }
   const double floor = 1e-9 * std::max(1.0, std::abs(p[1]));
-  if (slow.size() < 10 || fast.size() < 10) return {std::max(spread_of(residuals), floor), 0};
-  const double a = std::pow(spread_of(slow), 2), b = std::pow(spread_of(fast), 2);
+  if (slow.size() < 10 || fast.size() < 10) return {std::max(robust_spread(residuals), floor), 0};
+  const double a = std::pow(robust_spread(slow), 2), b = std::pow(robust_spread(fast), 2);
   const double moving = (b - a) / (kFast - kSlow), still = a - kSlow * moving;
-  if (moving <= 0 || still <= 0) return {std::max(spread_of(residuals), floor), 0};
+  if (moving <= 0 || still <= 0) return {std::max(robust_spread(residuals), floor), 0};
   return {std::max(std::sqrt(still), floor), std::sqrt(moving)};
 }
 
@@ -477,7 +473,7 @@ void add_second_harmonic(DriveFit& lock, const Attempt& a, int harmonics, double
   const double f = h.dot(c.ldlt().solve(h)) / 2;
   if (freedom > 0)
     lock.p_sinusoidal = boost::math::cdf(boost::math::complement(boost::math::fisher_f(2, freedom), f));
-  if (lock.p_sinusoidal && *lock.p_sinusoidal < kSuspicious)
+  if (lock.p_sinusoidal && *lock.p_sinusoidal < kSuspiciousHarmonic)
     lock.notes.push_back(
         fmt::format("the drive is not a pure sine: second harmonic {:.2g} +- {:.1g} of A (p = {:.1g})",
                     *lock.second_harmonic, *lock.second_harmonic_error, *lock.p_sinusoidal));
@@ -497,8 +493,7 @@ void add_stretches(DriveFit& lock) {
   if (without > 0)
     lock.notes.push_back(
         fmt::format("the plate does not follow the drive in {} of {} frames ({}), as before the shaker "
-                    "starts or after it "
-                    "stops: they have no phase, and track leaves them out",
+                    "starts or after it stops: they have no phase, and track leaves them out",
                     without, n, imaging::in_words(lock.out_of_lock_stretches)));
   if (static_cast<double>(single) > kMany * static_cast<double>(n))
     lock.notes.push_back(fmt::format(

@@ -41,8 +41,7 @@ analysis::Figure drive_fit_figure(const DriveFit& lock) {
       "{}set format x ''\nset xlabel ''\nset tmargin at screen 0.95\nset bmargin at screen 0.47\n"
       "set key at screen 0.5,0.01 center bottom horizontal\n"
       "plot 'plate.dat' index 1 using 1:2 with lines lw {} lc rgb blue title 'fit', 'plate.dat' index 0 "
-      "using 1:2 "
-      "with points pt 7 ps 0.5 lc rgb '#222222' title 'frames'{}\n"
+      "using 1:2 with points pt 7 ps 0.5 lc rgb '#222222' title 'frames'{}\n"
       "unset key\n{}set tmargin at screen 0.43\nset bmargin at screen 0.20\n"
       "plot 0 with lines lw {} lc rgb blue, 'plate.dat' index 0 using 1:3 with points pt 7 ps 0.5 lc rgb "
       "'#222222'\nunset multiplot\n",

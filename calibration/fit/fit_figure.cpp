@@ -11,7 +11,7 @@
 namespace twincell::calibration {
 namespace {
 
-constexpr int kSteps = 200;
+constexpr int kCurveSteps = 200;
 
 double error_of(const DataPoint& p) {
   if (p.sigma > 0) return p.sigma;
@@ -77,8 +77,8 @@ analysis::Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& p
   const double floor = law.logarithmic ? y_axis.low / length : y_axis.low - length,
                ceiling = law.logarithmic ? y_axis.high * length : y_axis.high + length;
   const bool steps_in_ratio = law.axis == Law::Axis::logarithmic && low > 0;
-  for (int s = 0; s <= kSteps; ++s) {
-    const double share = static_cast<double>(s) / kSteps;
+  for (int s = 0; s <= kCurveSteps; ++s) {
+    const double share = static_cast<double>(s) / kCurveSteps;
     const double x = steps_in_ratio ? low * std::pow(high / low, share) : low + (high - low) * share;
     const double y = fit.at(x), error = fit.error_at(x);
     const double half = std::isfinite(error) ? reach * error : 0;
@@ -113,14 +113,11 @@ analysis::Figure fit_figure(const CurveFit& fit, const std::vector<DataPoint>& p
       "0.44\n"
       "set key at screen 0.5,0.01 center bottom horizontal maxcols 3\n"
       "plot 'fit.dat' index 1 using 1:3:4 with filledcurves fc rgb sky fs transparent solid 0.35 noborder "
-      "title "
-      "'95 % band', 'fit.dat' index 1 using 1:2 with lines lw {} lc rgb blue title '{}', 'fit.dat' index 0 "
-      "using "
-      "1:2:3:4 with yerrorbars pt {} lc rgb '#222222' title 'points'{}\n"
+      "title '95 % band', 'fit.dat' index 1 using 1:2 with lines lw {} lc rgb blue title '{}', 'fit.dat' "
+      "index 0 using 1:2:3:4 with yerrorbars pt {} lc rgb '#222222' title 'points'{}\n"
       "unset key\nunset title\n{}set tmargin at screen 0.40\nset bmargin at screen 0.21\n"
       "plot 0 with lines lw {} lc rgb blue, 'fit.dat' index 0 using 1:5 with impulses lw {} lc rgb grey, "
-      "'fit.dat' "
-      "index 0 using 1:5 with points pt {} lc rgb '#222222'\nunset multiplot\n",
+      "'fit.dat' index 0 using 1:5 with points pt {} lc rgb '#222222'\nunset multiplot\n",
       analysis::figure_style::axes(x_axis, y_axis),
       analysis::gnuplot_formula(title.empty() ? law.formula : title), analysis::figure_style::kCurve,
       analysis::gnuplot_text(law_label), analysis::figure_style::kCircle, more,

@@ -122,7 +122,7 @@ SyntheticCamera::SyntheticCamera(const CameraOptions& stated, const TrajectoryIn
 }
 
 double SyntheticCamera::radius_px(std::size_t slot) const {
-  return (info_.radius.empty() ? 0.5 : info_.radius[slot]) * options_.pixels_per_sigma;
+  return radius_of(info_.radius, slot) * options_.pixels_per_sigma;
 }
 
 Vec3 SyntheticCamera::place(const Exposure& exposure, std::size_t slot, double tau) const {

@@ -18,7 +18,6 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr double kRadius = 0.5;  // of a bead whose radius is not known, sigma
 const cv::Scalar kInk(40, 40, 40), kWall(60, 60, 60), kPeriodic(205, 205, 205), kTrack(120, 120, 120),
     kArrow(40, 40, 200), kChain(30, 30, 30), kRim(235, 235, 235);
 
@@ -94,7 +93,7 @@ Extremes extremes_of(const TrajectorySource& source, const std::vector<std::size
     e.shift = e.shift.cwiseMax(shift_of(frame, info).cwiseAbs());
     for (std::size_t i = 0; i < frame.position.size(); ++i) {
       if (!visible(frame, i)) continue;
-      const double radius = info.radius.empty() ? kRadius : info.radius[i];
+      const double radius = radius_of(info.radius, i);
       e.top = std::max(e.top, frame.position[i].z() + radius);
       e.bottom = std::min(e.bottom, frame.position[i].z() - radius);
     }
@@ -182,9 +181,7 @@ class Painter {
     line(picture, view_.project(a).at, view_.project(b).at, kind == Boundary::wall ? kWall : kPeriodic,
          width);
   }
-  [[nodiscard]] double radius(std::size_t i) const {
-    return info_.radius.empty() ? kRadius : info_.radius[i];
-  }
+  [[nodiscard]] double radius(std::size_t i) const { return radius_of(info_.radius, i); }
 
   // The cell from its plate to the top of the picture. In 3D, the edges that meet in the corner nearest to
   // the eye lie in front of the beads.

@@ -135,6 +135,28 @@ void stretch_to_rim(std::vector<Detection>& beads, const DiscProfile& profile) {
   }
 }
 
+double largest_radius(const LocatorOptions& options) {
+  double diameter = options.diameter_px;
+  for (const double other : options.other_diameters_px) diameter = std::max(diameter, other);
+  return diameter / 2;
+}
+
+/// What locate() returns of the stages. \param size of the picture as it is stored
+Located turned_back(LocatorStages stages, const PictureOrientation& orientation, cv::Size size) {
+  Located result;
+  result.blur_px = stages.refined.blur_px;
+  result.path_px = orientation.back(stages.refined.path_px);
+  result.beads = std::move(stages.judged.beads);
+  result.dropped = std::move(stages.refined.dropped);
+  result.dropped.insert(result.dropped.end(), stages.judged.dropped.begin(), stages.judged.dropped.end());
+  for (std::vector<Detection>* list : {&result.beads, &result.dropped}) {
+    for (Detection& d : *list) d = orientation.back(d, size);
+    sort_by_place(*list);
+  }
+  result.stages = std::move(stages.reports);
+  return result;
+}
+
 }  // namespace
 
 LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) {
@@ -144,13 +166,9 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
   LocatorStages result;
   Stopwatch watch;
   throw_if_cancelled();
-  double largest = radius;
   RefineOptions refined = options.refine;
-  for (const double other : options.other_diameters_px) {
-    largest = std::max(largest, other / 2);
-    refined.other_radii_px.push_back(other / 2);
-  }
-  result.image = prepare(grey, options.preprocess, largest);
+  for (const double other : options.other_diameters_px) refined.other_radii_px.push_back(other / 2);
+  result.image = prepare(grey, options.preprocess, largest_radius(options));
   result.reports.push_back({"prepare", watch.lap(), 0});
   throw_if_cancelled();
   result.proposals = propose_all(result.image, options);
@@ -185,18 +203,18 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
 
 Located locate(const cv::Mat& picture, const LocatorOptions& options) {
   const PictureOrientation orientation = canonical_picture_orientation(picture);
+  return turned_back(locate_stages(orientation.turned(picture), options), orientation, picture.size());
+}
+
+LocatedBetweenWalls locate_between_walls(const cv::Mat& picture, const LocatorOptions& options) {
+  const PictureOrientation orientation = canonical_picture_orientation(picture);
   LocatorStages stages = locate_stages(orientation.turned(picture), options);
-  Located result;
-  result.blur_px = stages.refined.blur_px;
-  result.path_px = orientation.back(stages.refined.path_px);
-  result.beads = std::move(stages.judged.beads);
-  result.dropped = std::move(stages.refined.dropped);
-  result.dropped.insert(result.dropped.end(), stages.judged.dropped.begin(), stages.judged.dropped.end());
-  for (std::vector<Detection>* list : {&result.beads, &result.dropped}) {
-    for (Detection& d : *list) d = orientation.back(d, picture.size());
-    sort_by_place(*list);
-  }
-  result.stages = std::move(stages.reports);
+  LocatedBetweenWalls result;
+  if (!orientation.turns())
+    result.walls = stages.image.opaque;
+  else if (!picture.empty())
+    result.walls = prepare(picture, options.preprocess, largest_radius(options)).opaque;
+  result.located = turned_back(std::move(stages), orientation, picture.size());
   return result;
 }
 

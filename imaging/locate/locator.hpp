@@ -72,4 +72,13 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options);
 /// \throws ConfigError as `check`
 Located locate(const cv::Mat& grey, const LocatorOptions& options);
 
+/// Beads and walls of one frame.
+struct LocatedBetweenWalls {
+  Located located;
+  cv::Mat1b walls;  ///< Prepared::opaque of the frame as it is stored, for the largest of the bead radii
+};
+/// As locate(), with the walls. They are computed a second time only if the frame is not stored in its
+/// canonical orientation: in another one their rounding differs.
+LocatedBetweenWalls locate_between_walls(const cv::Mat& grey, const LocatorOptions& options);
+
 }  // namespace twincell::imaging

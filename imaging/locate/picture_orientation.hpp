@@ -18,6 +18,8 @@ namespace twincell::imaging {
 struct PictureOrientation {
   bool transpose = false, flip_x = false, flip_y = false;
 
+  /// Whether the picture in this orientation is another one than that which is stored.
+  [[nodiscard]] bool turns() const { return transpose || flip_x || flip_y; }
   /// The picture in this orientation.
   [[nodiscard]] cv::Mat turned(const cv::Mat& picture) const;
   /// Transforms a detection from the turned picture to the original. \param size size of the original

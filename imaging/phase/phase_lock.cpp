@@ -65,8 +65,7 @@ void leave_out(PhaseTable& table, std::span<const FrameStretch> stretches) {
 std::string out_of_lock_in_words(const PhaseTable& table) {
   return fmt::format(
       "the plate does not follow the drive in {} of {} frames ({}); they have no phase and are left out of "
-      "the "
-      "trajectory",
+      "the trajectory",
       frames_in(table.out_of_lock), table.frames.size(), in_words(table.out_of_lock));
 }
 

@@ -60,10 +60,6 @@ std::vector<double> deviations(std::span<const double> z, const Ticks& t, const 
   return r;
 }
 
-double scatter_of(std::vector<double> deviations) {
-  return 1.4826 * upper_median(std::move(deviations));
-}
-
 /// Negative log-likelihood of heights and ticks.
 double cost_of(std::span<const double> z, const Ticks& t, const Sine& sine, double scatter) {
   double cost = 0;
@@ -177,13 +173,13 @@ std::optional<SineSlips> fit_sine_with_slips(std::span<const double> z, int fram
       // Frames of a plate at rest would flatten the sine.
       constexpr double kFar = 0.5;  // of the amplitude
       fit(z, ticks, 0, z.size(), sine, std::max(5 * scatter, round == 0 ? kFar * sine.amplitude() : 0));
-      scatter = std::max(scatter_of(deviations(z, ticks, sine)), kLeastScatter * sine.amplitude());
+      scatter = std::max(robust_spread(deviations(z, ticks, sine)), kLeastScatter * sine.amplitude());
     }
     // The path starts from one part of the film, so that without slips it must not fit nearly as well.
     Sine straight = fixed_sine;
     for (int round = 0; round < 3; ++round)
       fit(z, fixed, 0, z.size(), straight,
-          5 * std::max(scatter_of(deviations(z, fixed, straight)), kLeastScatter * straight.amplitude()));
+          5 * std::max(robust_spread(deviations(z, fixed, straight)), kLeastScatter * straight.amplitude()));
     if (cost_of(z, fixed, straight, scatter) <= cost_of(z, ticks, sine, scatter)) {
       ticks = fixed;
       sine = straight;
@@ -191,7 +187,7 @@ std::optional<SineSlips> fit_sine_with_slips(std::span<const double> z, int fram
   }
   out.mean = sine.c[0];
   out.amplitude = sine.amplitude();
-  out.scatter = scatter_of(deviations(z, ticks, sine));
+  out.scatter = robust_spread(deviations(z, ticks, sine));
   // Phase of frame 0: the sine counts from tick 0, and frame 0 has tick ticks[0].
   const double turns =
       std::atan2(sine.c[2], sine.c[1]) / kTurn + static_cast<double>(ticks[0]) / static_cast<double>(n);
@@ -234,7 +230,7 @@ std::optional<FreeSine> fit_free_sine(std::span<const double> all) {
     search(middle - known, middle + known, known / 4);
   }
   if (!(best.omega > 0)) return std::nullopt;
-  return FreeSine{kTurn / best.omega, best.amplitude(), scatter_of(deviations(z, ticks, best)), best.c[0],
+  return FreeSine{kTurn / best.omega, best.amplitude(), robust_spread(deviations(z, ticks, best)), best.c[0],
                   turns_of(best)};
 }
 

@@ -100,9 +100,8 @@ void flag_tracers(std::vector<Detection>& beads, double below) {
   // The limit lies below the other beads, and in or above the gap.
   const std::size_t split = separate_population(sorted, limit);
   if (split > 0) limit = std::min(limit, sorted[split]);
-  for (double& v : interior) v = std::abs(v - typical);
   constexpr double kLeastScatter = 0.005;
-  const double scatter = std::max(kLeastScatter, 1.4826 * upper_median(std::move(interior)));
+  const double scatter = std::max(kLeastScatter, robust_spread(std::move(interior), typical));
   for (Detection& b : beads) {
     b.tracer = split > 0 && b.interior < limit;
     b.tracer_margin = std::abs(b.interior - limit) / scatter;

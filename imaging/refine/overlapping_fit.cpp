@@ -159,19 +159,15 @@ class Layers {
   void learn() {
     constexpr double kMostly = 0.8;
     constexpr std::size_t kFewest = 6;
-    constexpr double kLeastRadius = 0.003, kLeastDarkness = 0.01, kFromMedian = 1.4826;
+    constexpr double kLeastRadius = 0.003, kLeastDarkness = 0.01;
     std::vector<double> radii, levels;
     for (std::size_t k = 0; k < discs_.size(); ++k)
       if (sums_[k].seen > kMostly) radii.push_back(discs_[k].radius), levels.push_back(discs_[k].darkness);
     if (radii.size() < kFewest) return;
-    const auto scatter = [&](std::vector<double> values, double middle) {
-      for (double& v : values) v = std::abs(v - middle);
-      return kFromMedian * upper_median(std::move(values));
-    };
     found_radius_ = upper_median(radii);
-    spread_ = std::max(kLeastRadius, scatter(radii, found_radius_) / radius_);
+    spread_ = std::max(kLeastRadius, robust_spread(radii, found_radius_) / radius_);
     darkness_ = upper_median(levels);
-    darkness_spread_ = std::max(kLeastDarkness, scatter(levels, darkness_));
+    darkness_spread_ = std::max(kLeastDarkness, robust_spread(levels, darkness_));
   }
 
   /// Removes the discs that explain too little, the least first. \returns how many

@@ -23,8 +23,7 @@ std::vector<Detection> paler_discs(const std::vector<Detection>& beads,
   std::vector<double> darkness;
   for (const Detection& d : paler) darkness.push_back(d.darkness);
   const double typical = upper_median(darkness);
-  for (double& v : darkness) v = std::abs(v - typical);
-  if (1.4826 * upper_median(std::move(darkness)) >= kAlike * typical) return {};
+  if (robust_spread(std::move(darkness), typical) >= kAlike * typical) return {};
   return paler;
 }
 

@@ -285,11 +285,10 @@ class Explanation {
     over_owned([&](int x, int y, std::size_t b, std::size_t k) {
       residuals[sizes_[size_of_[b]].first + k].push_back(std::abs(residual(x, y)));
     });
-    constexpr double kFromMedian = 1.4826;
     for (Size& s : sizes_)
       for (std::size_t k = 0; k < s.count; ++k)
         if (auto& of = residuals[s.first + k]; !of.empty())
-          s.scale[k] = std::max(noise_, kFromMedian * upper_median(std::move(of)));
+          s.scale[k] = std::max(noise_, robust_spread(std::move(of)));
     std::vector<double> sums(levels_);
     over_owned([&](int x, int y, std::size_t b, std::size_t k) {
       const Size& s = sizes_[size_of_[b]];

@@ -21,8 +21,7 @@ struct Scatter {
     constexpr std::size_t kEnough = 20;
     if (values.size() < kEnough) return;
     const double middle = upper_median(values);
-    for (double& v : values) v = std::abs(v - middle);
-    const double scatter = 1.4826 * upper_median(values);
+    const double scatter = robust_spread(std::move(values), middle);
     const double own = scatter * scatter - rows * upper_median(variances);
     prior = {middle, std::max(least, std::sqrt(std::max(0.0, own)))};
   }

@@ -5,7 +5,7 @@
 /// Beads of one kind are alike, so no bead needs a radius and a darkness fitted from noise. Before the first
 /// sweep the priors are wide. After it their means are the medians over the beads. From the second sweep on
 /// their spreads are the observed scatter less that of the fit alone:
-///     spread^2 = (1.4826 median |v - median v|)^2 - median of the variances of the fit.
+///     spread^2 = robust_spread(v, median v)^2 - median of the variances of the fit.
 
 #include <cstddef>
 #include <vector>

@@ -55,8 +55,7 @@ LocatorOptions with_pale_discs(const cv::Mat& frame, const LocatorOptions& settl
   const std::size_t without = locate(frame, settled).beads.size();
   if (with.size() < without + std::max<std::size_t>(below, 1)) return settled;
   const double typical = upper_median(pale);
-  for (double& d : pale) d = std::abs(d - typical);
-  return 1.4826 * upper_median(std::move(pale)) < kAlike * typical ? options : settled;
+  return robust_spread(std::move(pale), typical) < kAlike * typical ? options : settled;
 }
 
 /// Examines frames 0, 1, 2, 4, ... until one shows a bead with the settings found in it. The frames are few,

@@ -78,18 +78,18 @@ TriedSettings try_one(const ExaminedRegion& region, const LocatorOptions& given,
     settings.contrast = options.preprocess.contrast = find_contrast(region.picture, options);
   options.refine.sweeps = std::min(options.refine.sweeps, most_sweeps);
   options.rim_radii = false;
-  const Located located = locate(region.picture, options);
-  const std::vector<Detection>& beads = located.beads;
+  const LocatedBetweenWalls found = locate_between_walls(region.picture, options);
+  const cv::Mat1b& walls = found.walls;
+  const std::vector<Detection>& beads = found.located.beads;
   std::vector<double> radii = {0.5 * options.diameter_px};
   for (const double d : options.other_diameters_px) radii.push_back(0.5 * d);
-  const cv::Mat1b walls =
-      prepare(region.picture, options.preprocess, *std::max_element(radii.begin(), radii.end())).opaque;
   const PictureEvidence evidence =
       picture_evidence(region.picture, beads, radii, region.neighbour_radius_px, walls);
   TriedSettings tried{settings, evidence.total, beads.size()};
   // A stated size is that of round objects. Rims of patterned discs vary with direction.
   if (given.diameter_px <= 0 && model_of(options.refine) != DiscModel::circle) {
-    tried.rim_variation = rim_variation(region.picture, beads, radii, other_discs(located.dropped), walls);
+    tried.rim_variation =
+        rim_variation(region.picture, beads, radii, other_discs(found.located.dropped), walls);
     tried.rim_shift = rim_shift(beads, evidence.rims, radii);
   }
   return tried;

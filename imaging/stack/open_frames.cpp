@@ -30,6 +30,10 @@ fs::path file_of_stack(const fs::path& stack) {
   return split(stack).file;
 }
 
+bool has_picture_name(const fs::path& file) {
+  return frames::is_picture_of_folder(file);
+}
+
 std::unique_ptr<FrameSource> open_frames(const fs::path& stack) {
   quiet_opencv();
   const auto [file, inside] = split(stack);

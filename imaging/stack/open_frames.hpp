@@ -16,6 +16,10 @@ namespace twincell::imaging {
 /// \throws InputError if there is nothing to read
 std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& stack);
 
+/// Whether a file is one of the pictures of a folder that open_frames() reads, by its extension: .png, .tif,
+/// .tiff, .jpg, .jpeg, .bmp or .pgm, in small or capital letters.
+bool has_picture_name(const std::filesystem::path& file);
+
 /// File or folder on disk that contains a stack: "file.h5" for "file.h5:/path".
 std::filesystem::path file_of_stack(const std::filesystem::path& stack);
 

@@ -66,9 +66,8 @@ std::string repeats_in_words(std::span<const std::uint8_t> repeats, const FrameR
   if (first == repeats.end()) return {};
   return fmt::format(
       "{} of {} frames equal the frame before them to the bit, the first of them frame {}: a conversion of "
-      "the "
-      "frame rate, or a copy, has repeated them, as noise makes no two frames of a camera equal; export the "
-      "film without a conversion",
+      "the frame rate, or a copy, has repeated them, as noise makes no two frames of a camera equal; export "
+      "the film without a conversion",
       std::count(repeats.begin(), repeats.end(), 1), repeats.size(), range.number(first - repeats.begin()));
 }
 

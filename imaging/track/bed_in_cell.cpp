@@ -24,7 +24,7 @@ void BedInCell::append(const Frame& frame) {
   for (std::size_t i = 0; i < frame.position.size(); ++i) {
     if (!frame.present(i) || !std::isfinite(frame.position[i].x()) || !std::isfinite(frame.position[i].z()))
       continue;
-    const double radius = info_.radius.empty() ? 0.5 : info_.radius[i];
+    const double radius = radius_of(info_.radius, i);
     left = std::min(left, frame.position[i].x() - radius);
     right = std::max(right, frame.position[i].x() + radius);
     low = std::min(low, frame.position[i].z() - radius);

@@ -148,8 +148,7 @@ std::string LinkedDetections::missing_beads() const {
   if (static_cast<double>(fewest) >= kConstant * static_cast<double>(most)) return {};
   return fmt::format(
       "the frames hold {} to {} beads: beads leave the picture, or are not found in every frame; N_l, the "
-      "results and "
-      "a twin count only those that are seen",
+      "results and a twin count only those that are seen",
       fewest, most);
 }
 

@@ -155,8 +155,7 @@ std::string TrackedStack::paler_doubt() const {
   if (left_out <= kMany * static_cast<double>(beads)) return {};
   return fmt::format(
       "{:.2g} paler discs in a frame were left out: if they are beads, such as tracers, N_l, the results and "
-      "a "
-      "twin lack them (twincell locate --candidates lists them)",
+      "a twin lack them (twincell locate --candidates lists them)",
       left_out / static_cast<double>(frames.size()));
 }
 

@@ -21,6 +21,10 @@ namespace twincell::sim {
 
 namespace {
 
+// Steps per contact, ascending.
+constexpr std::array kSteps = {6.37, 8.37, 10.37, 14.37, 20.37, 30.37, 50.37, 70.37, 100.37, 200.37, 400.37};
+constexpr std::array kStepsOfAQuickStudy = {6.37, 10.37, 20.37, 50.37};
+
 const std::string kPaperOne = "preset = \"fortini-huang-2015\"\n";
 
 Scene make_scene(const StepSetting& setting, const std::string& text) {
@@ -32,7 +36,7 @@ Scene make_scene(const StepSetting& setting, const std::string& text) {
 
 /// Table I of the first paper, scaled to another stiffness.
 std::string scaled_contact(double k_n) {
-  const double gamma = 100 * std::sqrt(k_n / 1e6);
+  const double gamma = 100 * std::sqrt(k_n / kPaperStiffness);
   return fmt::format("[contact]\nk_n = {}\nk_t = {}\ngamma_n = {}\ngamma_t = {}\n", k_n, k_n / 100, gamma,
                      gamma);
 }
@@ -232,6 +236,24 @@ double CollisionErrors::restitution() const {
 }
 double CollisionErrors::sticking() const {
   return std::max(sticking_pair.largest, sticking_wall.largest);
+}
+
+std::vector<StepSetting> study_settings(bool quick) {
+  std::vector<StepSetting> all;
+  const auto add = [&](double k_n, const auto& steps) {
+    for (const char* integrator : {"verlet", "predicted", "split"})
+      for (const double n : steps) all.push_back({.integrator = integrator, .n = n, .k_n = k_n});
+  };
+  if (quick) {
+    add(kPaperStiffness, kStepsOfAQuickStudy);
+  } else {
+    for (const double k_n : {1e5, kPaperStiffness, 1e7}) add(k_n, kSteps);
+  }
+  return all;
+}
+
+StepSetting longest_study_step() {
+  return {.integrator = "verlet", .n = kSteps.front()};
 }
 
 CollisionErrors collision_errors(const StepSetting& setting, int phases) {

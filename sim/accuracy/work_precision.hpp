@@ -80,6 +80,19 @@ struct WorkPrecision {
   StepCost cost;
   ImpactErrors impacts = {};  ///< for bed_impacts()
 };
+
+/// Stiffness k_n of Fortini & Huang 2015 (Table I), m g/sigma.
+inline constexpr double kPaperStiffness = 1e6;
+/// Rms error of the spin at which Verlet and split are compared (equal_impacts), relative to its change.
+inline constexpr double kComparedSpinError = 0.01;
+/// The settings that a study compares: Verlet, predicted and split, each with eleven numbers of steps per
+/// contact from 6.37 to 400.37, for k_n = 1e5, 1e6 and 1e7. No number of steps is an integer: otherwise
+/// contacts of equal duration would all end at the same point within a step.
+/// \param quick k_n of the paper alone, with four numbers of steps from 6.37 to 50.37
+std::vector<StepSetting> study_settings(bool quick);
+/// Verlet with the longest step of study_settings(), for k_n of the paper.
+StepSetting longest_study_step();
+
 /// Impacts in the bed of the first paper, sliding and sticking: a hundred each at Gamma = 2 and 3
 /// (impacts_of_a_bed), each used at kBedPhases entry phases.
 std::vector<Impact> bed_impacts();

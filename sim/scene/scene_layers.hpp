@@ -30,8 +30,9 @@ void displace(Config& lower, const Config& upper);
 /// scene that states amplitude and frequency; assignments that contradict each other are refused later.
 void assign(Config& config, const std::vector<std::string>& assignments);
 
-/// Restates accelerations in m/s^2 for a gravity other than that of the scale: Gamma refers to the gravity of
-/// the cell, and so do they.
+/// Divides every drive.peak_acceleration_m_s2 by `cell.gravity`, the gravity of the run in units of that of
+/// the scale. Gamma refers to the gravity of the run; reduce_units(), which is called afterwards and knows no
+/// scene, divides by the gravity of the scale alone.
 void refer_to_gravity(Config& config);
 
 }  // namespace twincell::sim

@@ -57,7 +57,7 @@ void set_box(Snapshot& s, const TrajectoryInfo& info, const ExportUnits& units) 
 void add_contacts(Snapshot& s, const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units) {
   const int dimension = info.box.dimension;
   const auto radius = [&](std::int32_t bead) {
-    return info.radius.empty() ? 0.5 : info.radius[static_cast<std::size_t>(bead)];
+    return radius_of(info.radius, static_cast<std::size_t>(bead));
   };
   for (const ContactForce& c : frame.contact_forces) {
     const Vec3& centre = frame.position[static_cast<std::size_t>(c.i)];

@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "trajectory/ranges.hpp"
 #include "trajectory/spacing.hpp"
+#include "trajectory/wrapped_positions.hpp"
 
 namespace twincell {
 
@@ -61,7 +62,7 @@ struct ForeignTrajectory::Impl {
   double step_distance = 0, step_range = 0;  ///< smallest between two frames; first to last
   double spacing = 0;                        ///< of the beads of the first frame, sigma
   std::size_t beyond = 0;                    ///< beads of the first frame beside the cell
-  std::array<bool, 3> outside{};             ///< a bead lies outside the period along this axis
+  PositionExtent extent;                     ///< of all beads and frames, axes and unit of Snapshot
   std::string assumption;
 
   /// Converts a vector from the axes of Snapshot to those of Box. In 2D, y of the snapshot is our z, and -z
@@ -123,9 +124,7 @@ struct ForeignTrajectory::Impl {
                        fmt::format("bead {} is at ({:g}, {:g}, {:g}), farther than {:g} bead diameters "
                                    "from the origin of the cell.",
                                    a.id, a.position.x(), a.position.y(), a.position.z(), kFarthestPosition));
-      for (int k = 0; k < 3; ++k)
-        if (a.position[k] < s.lower[k] - o.sigma || a.position[k] > s.upper[k] + o.sigma)
-          outside[static_cast<std::size_t>(k)] = true;
+      extent.add(a.position);
       constexpr double kFlat = 1e-9;
       if (!first_position) first_position = a.position;
       for (const int k : {1, 2})
@@ -210,6 +209,18 @@ struct ForeignTrajectory::Impl {
               y_down ? " y of this file increases downwards; --y-up is for a table whose y does not." : ""));
   }
 
+  /// Period of each axis along which the positions are wrapped; 0 along the others.
+  [[nodiscard]] Vec3 wrapping(const Snapshot& s, const SnapshotColumns& columns) const {
+    Vec3 period = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) {
+      const auto axis = static_cast<std::size_t>(k);
+      const double length = s.upper[k] - s.lower[k];
+      if (s.periodic[axis] && columns.wrapped[axis] && extent.is_wrapped(k, length, o.sigma))
+        period[k] = length;
+    }
+    return period;
+  }
+
   [[nodiscard]] std::size_t slot_of(const SnapshotReader& reader, const SnapshotBead& a) const {
     const auto at = std::lower_bound(ids.begin(), ids.end(), a.id);
     if (at == ids.end() || *at != a.id) reader.fail_at(a.line, "the file changed while it was read.");
@@ -217,7 +228,7 @@ struct ForeignTrajectory::Impl {
   }
 
   /// Second pass: converts a snapshot to a frame with slots, unwrapped coordinates and reduced units.
-  void fill(const SnapshotReader& reader, const Snapshot& s, std::vector<Vec3>& last, Frame& frame) const {
+  void fill(const SnapshotReader& reader, const Snapshot& s, PeriodCounter& periods, Frame& frame) const {
     frame.step = s.step;
     frame.time = time(s);
     if (info.drive) {
@@ -238,14 +249,7 @@ struct ForeignTrajectory::Impl {
     frame.id.assign(info.columns.identity ? ids.size() : 0, -1);
     for (const SnapshotBead& a : s.beads) {
       const std::size_t slot = slot_of(reader, a);
-      Vec3 r = a.position;
-      for (int k = 0; k < 3; ++k) {
-        const auto axis = static_cast<std::size_t>(k);
-        if (!s.periodic[axis] || !reader.columns().wrapped[axis] || outside[axis]) continue;
-        const double length = s.upper[k] - s.lower[k];
-        if (std::isfinite(last[slot][k])) r[k] -= length * std::round((r[k] - last[slot][k]) / length);
-      }
-      last[slot] = r;
+      const Vec3 r = periods.unwrapped(slot, a.position);
       frame.position[slot] = turned(r - origin) / o.sigma;
       if (o.dimension == 2) frame.position[slot].y() = 0;
       if (info.columns.velocity) frame.velocity[slot] = turned(a.velocity) * (t0 / o.sigma);
@@ -377,9 +381,10 @@ void ForeignTrajectory::copy_to(TrajectorySink& sink, Progress& progress) const 
   SnapshotReader& reader = *source;
   Snapshot s;
   Frame frame;
-  std::vector<Vec3> last(impl_->ids.size(), Vec3::Constant(std::nan("")));
+  std::optional<PeriodCounter> periods;  // the box is that of the first frame
   while (next_sorted(reader, s)) {
-    impl_->fill(reader, s, last, frame);
+    if (!periods) periods.emplace(impl_->wrapping(s, reader.columns()), impl_->ids.size());
+    impl_->fill(reader, s, *periods, frame);
     sink.append(frame);
     progress.update(reader.done(), reader.size());
   }

@@ -42,8 +42,7 @@ struct ForeignOptions {
 /// copies the frames. Memory use does not grow with the number of frames, except for tables.
 ///
 /// A bead that is absent from a frame has an empty slot there. Coordinates without a number of periods are
-/// taken for wrapped, unless a bead lies more than a diameter outside the period, and are unwrapped by the
-/// shortest displacement from frame to frame.
+/// unwrapped by the rule of wrapped_positions.hpp.
 class ForeignTrajectory {
  public:
   /// \throws InputError naming file and line for anything malformed; ConfigError for options that are missing

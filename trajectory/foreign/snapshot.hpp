@@ -72,8 +72,8 @@ struct SnapshotColumns {
   bool contacts = false;             ///< only when written
   std::vector<std::string> numbers;  ///< names of further numbers of each bead, only when written
   std::array<bool, 3> velocity{}, spin{};
-  /// Coordinates that come without the number of periods. They are wrapped unless beads lie outside the
-  /// period.
+  /// Coordinates that come without the number of periods, so that they may be wrapped
+  /// (wrapped_positions.hpp).
   std::array<bool, 3> wrapped{};
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "trajectory/wrapped_positions.hpp"
 
 namespace twincell {
 
@@ -69,10 +70,13 @@ void ForeignRows::order(Frame& frame) const {
 }
 
 void ForeignRows::find_crossings(const h5::Series& id, const h5::Series& position, std::size_t n_beads) {
-  constexpr double kOutside = 1;  // sigma
-  Frame frame, before;
-  Vec3 least = Vec3::Constant(HUGE_VAL), most = -least;
-  const Vec3 size = box_.size();
+  Vec3 period = box_.size();
+  for (int k = 0; k < 3; ++k)
+    if (!box_.periodic(static_cast<Axis>(k))) period[k] = 0;
+  PositionExtent extent;
+  PeriodCounter counter(period, n_beads);
+  std::vector<Vec3> counts(n_beads, Vec3::Zero());
+  Frame frame;
   for (std::size_t f = 0; f < position.size(); ++f) {
     frame.position.resize(n_beads);
     position.read(f, h5::native<double>(), frame.position.data());
@@ -80,26 +84,15 @@ void ForeignRows::find_crossings(const h5::Series& id, const h5::Series& positio
     if (id) id.read(f, h5::native<std::int64_t>(), frame.id.data());
     order(frame);
     for (std::size_t i = 0; i < n_beads; ++i) {
-      if (!frame.present(i) || !frame.position[i].allFinite()) {
-        if (f > 0) frame.position[i] = before.position[i];  // the last known place
-        continue;
-      }
-      for (int k = 0; k < 3; ++k) {
-        if (!box_.periodic(static_cast<Axis>(k)) || !(size[k] > 0)) continue;
-        const double r = frame.position[i][k];
-        least[k] = std::min(least[k], r);
-        most[k] = std::max(most[k], r);
-        if (f == 0 || !std::isfinite(before.position[i][k])) continue;
-        const double periods = std::round((r - before.position[i][k]) / size[k]);
-        if (periods != 0) crossings_.push_back({f, i, k, periods > 0 ? -1 : 1});
-      }
+      if (!frame.present(i) || !frame.position[i].allFinite()) continue;
+      extent.add(frame.position[i]);
+      const Vec3& now = counter.next(i, frame.position[i]);
+      for (int k = 0; k < 3; ++k)
+        if (now[k] != counts[i][k]) crossings_.push_back({f, i, k, now[k]});
+      counts[i] = now;
     }
-    std::swap(frame, before);
   }
-  // The extent counts, not the box: some programs have its middle at the origin.
-  std::erase_if(crossings_, [&](const Crossing& c) {
-    return most[c.axis] - least[c.axis] > size[c.axis] + 2 * kOutside;
-  });
+  std::erase_if(crossings_, [&](const Crossing& c) { return !extent.is_wrapped(c.axis, period[c.axis]); });
 }
 
 void ForeignRows::restore(std::size_t index, Frame& frame) const {
@@ -111,10 +104,14 @@ void ForeignRows::restore(std::size_t index, Frame& frame) const {
         if (box_.periodic(static_cast<Axis>(k))) frame.position[i][k] += images[i][k] * box_.size()[k];
   }
   order(frame);
+  if (crossings_.empty()) return;
+  std::vector<Vec3> counts(frame.position.size(), Vec3::Zero());
   for (const Crossing& c : crossings_) {
     if (c.frame > index) break;
-    frame.position[c.bead][c.axis] += c.sign * box_.size()[c.axis];
+    counts[c.bead][c.axis] = c.periods;
   }
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    frame.position[i] = PeriodCounter::moved(frame.position[i], counts[i], box_.size());
 }
 
 }  // namespace twincell

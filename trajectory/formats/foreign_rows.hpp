@@ -22,9 +22,8 @@ namespace twincell {
 class ForeignRows {
  public:
   ForeignRows() = default;
-  /// Reads all ids, and all positions if they may be wrapped without a number of periods: then a bead that
-  /// moves by more than half a period between two frames is taken to have crossed it. Positions are wrapped
-  /// unless their extent exceeds the period by more than 2 sigma. \param group the group of the particles
+  /// Reads all ids, and all positions if they may be wrapped without a number of periods; these are unwrapped
+  /// by the rule of wrapped_positions.hpp. \param group the group of the particles
   /// \param id, position its columns, which outlive this; `id` may be absent \throws InputError naming `file`
   /// if a frame names a bead twice, if more beads occur than a frame has rows, or if images have another
   /// shape than positions
@@ -37,7 +36,8 @@ class ForeignRows {
   /// A bead crossed the end of a period in the step to this frame.
   struct Crossing {
     std::size_t frame, bead;
-    int axis, sign;
+    int axis;
+    double periods;  ///< that the bead has crossed so far
   };
   void find_slots(const h5::Series& id, std::size_t n_beads, const std::string& file);
   void order(Frame& frame) const;

@@ -78,7 +78,7 @@ class Folder final : public FrameSource {
 };
 
 /// "; its folder frames does", for a folder above that of the pictures.
-std::string folders_with_pictures(const fs::path& folder, const std::string& pictures) {
+std::string folders_with_pictures(const fs::path& folder) {
   constexpr std::size_t kNamed = 3;
   std::vector<std::string> names;
   std::error_code error;
@@ -86,7 +86,7 @@ std::string folders_with_pictures(const fs::path& folder, const std::string& pic
     std::error_code ignored;
     if (!below->is_directory(ignored)) continue;
     for (fs::directory_iterator file(*below, ignored); !ignored && file != end; file.increment(ignored))
-      if (is_listed(pictures, file->path())) {
+      if (is_picture_of_folder(file->path())) {
         names.push_back(below->path().filename().string());
         break;
       }
@@ -101,8 +101,12 @@ std::string folders_with_pictures(const fs::path& folder, const std::string& pic
 
 }  // namespace
 
+bool is_picture_of_folder(const fs::path& file) {
+  static const std::string pictures = fmt::format("{} {}", picture_reader.extensions, tiff_reader.extensions);
+  return is_listed(pictures, file);
+}
+
 std::unique_ptr<FrameSource> open_folder(const fs::path& folder) {
-  const std::string pictures = fmt::format("{} {}", picture_reader.extensions, tiff_reader.extensions);
   std::string all;
   for (const Reader* reader : readers()) all += fmt::format("{} ", reader->extensions);
   std::vector<fs::path> files;
@@ -112,7 +116,7 @@ std::unique_ptr<FrameSource> open_folder(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     const fs::path& file = entry.path();
     if (file.filename().string().starts_with('.') || entry.is_directory(ignored)) continue;
-    if (is_listed(pictures, file)) {
+    if (is_picture_of_folder(file)) {
       files.push_back(file);
     } else {
       ++others;
@@ -121,12 +125,11 @@ std::unique_ptr<FrameSource> open_folder(const fs::path& folder) {
   }
   if (error) refuse(folder, "cannot be listed: " + error.message() + ".");
   if (files.empty())
-    refuse(folder, stack.empty()
-                       ? fmt::format("holds no PNG, TIFF, JPEG, BMP or PGM picture{}.",
-                                     folders_with_pictures(folder, pictures))
-                       : fmt::format("holds no PNG, TIFF, JPEG, BMP or PGM picture; it holds {}: name that "
-                                     "file.",
-                                     stack));
+    refuse(folder, stack.empty() ? fmt::format("holds no PNG, TIFF, JPEG, BMP or PGM picture{}.",
+                                               folders_with_pictures(folder))
+                                 : fmt::format("holds no PNG, TIFF, JPEG, BMP or PGM picture; "
+                                               "it holds {}: name that file.",
+                                               stack));
   std::vector<std::string> names;
   for (const fs::path& file : files) names.push_back(file.filename().string());
   sort_as_frames(names);

@@ -43,6 +43,8 @@ const std::vector<const Reader*>& readers();
 /// The first reader that owns the file. \throws InputError if there is none
 const Reader& reader_of(const Head& head);
 
+/// Whether open_folder() takes a file for a picture, by its extension in small or capital letters.
+bool is_picture_of_folder(const std::filesystem::path& file);
 /// Opens a folder of pictures as a stack.
 std::unique_ptr<FrameSource> open_folder(const std::filesystem::path& folder);
 

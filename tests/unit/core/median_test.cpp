@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <random>
 #include <vector>
 
@@ -21,4 +23,24 @@ TEST(Median, OfFewIsThatOfTheSorted) {
       std::sort(sorted.begin(), sorted.end());
       EXPECT_EQ(upper_median_of_few(few, n), sorted.at(n / 2)) << n;
     }
+}
+
+TEST(RobustSpread, IsTheStandardDeviationOfANormalDistribution) {
+  constexpr double kMean = 7, kSigma = 0.3;
+  constexpr std::size_t kValues = 100'000;
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal(kMean, kSigma);
+  std::vector<double> values(kValues);
+  for (double& v : values) v = normal(random);
+  // Standard error of the median deviation: 1.166 sigma/sqrt(n).
+  const double error = 1.166 * kSigma / std::sqrt(static_cast<double>(kValues));
+  EXPECT_NEAR(robust_spread(values, upper_median(values)), kSigma, 4 * error);
+  std::fill_n(values.begin(), kValues / 100, 1e9);
+  EXPECT_NEAR(robust_spread(values, upper_median(values)), kSigma, 0.02 * kSigma);
+}
+
+TEST(RobustSpread, OfFewValues) {
+  EXPECT_EQ(robust_spread({}), 0);
+  EXPECT_EQ(robust_spread({-2.0}), 1.4826 * 2);
+  EXPECT_EQ(robust_spread({4.0, 5.0, 9.0}, 5), 1.4826);
 }

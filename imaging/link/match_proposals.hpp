@@ -1,0 +1,35 @@
+#pragma once
+/// \file
+/// Proposals of a collective matching, and the fusion of a proposal with the present matching
+/// (collective_matching.hpp).
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "imaging/link/match_problem.hpp"
+
+namespace twincell::imaging {
+
+/// The matching that is improved.
+struct PresentMatching {
+  MatchSolution detection_of;          ///< of each bead; Assignment::kAlone: unassigned
+  std::vector<std::int64_t> owner_of;  ///< bead of each detection; Assignment::kAlone: unused
+
+  explicit PresentMatching(std::size_t detections) : owner_of(detections, Assignment::kAlone) {}
+  void adopt(MatchSolution solution);
+  [[nodiscard]] double total(const MatchProblem& problem) const {
+    return problem.total(detection_of, owner_of);
+  }
+};
+
+/// Proposal grown from one bead. Next is always the bead with the most settled neighbours and the detection
+/// closest to the position that their mean step predicts.
+/// \pre bead `seed` is assigned in `present`
+MatchSolution grow_proposal(const MatchProblem& problem, const MatchSolution& present, std::size_t seed);
+
+/// Fusion move: a minimum cut chooses for each bead between the present matching and the proposal. The result
+/// replaces the present matching if its sum is lower.
+void fuse(const MatchProblem& problem, PresentMatching& present, MatchSolution proposal);
+
+}  // namespace twincell::imaging
