@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/motion/tracers.hpp"
+#include "trajectory/plate.hpp"
 
 namespace twincell::analysis {
 namespace {

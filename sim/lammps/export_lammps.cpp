@@ -15,6 +15,7 @@
 #include "core/provenance.hpp"
 #include "sim/run/simulation.hpp"
 #include "sim/scene/plan.hpp"
+#include "sim/scene/plate_motion.hpp"
 
 namespace twincell::sim {
 
@@ -464,7 +465,8 @@ LammpsDeck lammps_deck(const Scene& scene, const TrajectorySource& trajectory, s
   constexpr double kSamePlate = 1e-9;
   const double ours =
       m.drive.displacement(static_cast<double>(m.first_step) / static_cast<double>(m.steps_per_period));
-  if (!std::isnan(frame.plate_height) && std::abs(frame.plate_height - ours) > kSamePlate)
+  if (!std::isnan(frame.plate_height) && std::abs(frame.plate_height - ours) > kSamePlate &&
+      (plate_follows_drive(scene) || frame.plate_height != 0))
     refuse(scene, "drive",
            fmt::format("the plate of {} is at {:g}, but this drive puts it at {:g}.", name,
                        frame.plate_height, ours));

@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "sim/run/contact_forces.hpp"
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/plate_motion.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "sim/system/cell_grid.hpp"
 #include "trajectory/temperature.hpp"
@@ -288,7 +289,7 @@ Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
   frame.time = system_.time();
   frame.cycle = cycle;
   frame.phase = phase;
-  frame.plate_height = system_.plate_height();
+  frame.plate_height = plate_follows_drive(scene_) ? system_.plate_height() : 0;
   for (const Bead& b : system_.beads) {
     frame.position.emplace_back(b.x, b.y, b.z);
     frame.velocity.emplace_back(b.vx, b.vy, b.vz);
