@@ -12,6 +12,7 @@
 #include "sim/scene/plate_motion.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "sim/system/cell_grid.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 #include "trajectory/temperature.hpp"
 
 namespace twincell::sim {
@@ -61,6 +62,19 @@ std::vector<ContactMemory> readable(const Scene& scene, const Plan& plan,
   return contacts;
 }
 
+/// Steps per cycle of the run whose frame a start in motion continues with its contact springs; absent if the
+/// start is another one.
+std::optional<double> steps_per_cycle_of_file(const Scene& scene) {
+  if (scene.start != StartKind::trajectory) return std::nullopt;
+  const H5mdReader file(scene.from);
+  if (file.info().source != "simulation" || !file.info().columns.contacts || !file.info().drive)
+    return std::nullopt;
+  Frame frame;
+  file.read(scene.frame, frame);
+  if (frame.step <= 0 || !(frame.time > 0)) return std::nullopt;
+  return file.info().drive->period() * static_cast<double>(frame.step) / frame.time;
+}
+
 /// Largest relative speed of a moving wall and a bead that touches it.
 double largest_kick(const System& s) {
   const Vec3 plate = s.plate_velocity_in_space();
@@ -107,8 +121,10 @@ RunState placed(const Scene& scene, Progress& progress) {
   state.tracer = std::move(start.tracer);
   if (!scene.in_motion) return state;
   state.driven = true;
-  state.step = first_step(plan, phase);
-  state.contacts = readable(scene, plan, std::move(start.contacts));
+  // The beads of a file, not those of the scene, set the number of steps of the run's cycles.
+  const Plan of_run = make_plan(scene, state.beads);
+  state.step = first_step(of_run, phase);
+  state.contacts = readable(scene, of_run, std::move(start.contacts));
   state.forces = std::move(start.forces);
   state.rim_speeds = std::move(start.rim_speeds);
   if (state.tracer.empty()) state.tracer = choose_tracers(state.beads, scene);
@@ -214,6 +230,16 @@ std::vector<std::string> Simulation::warnings() const {
     all.push_back(
         "the start in motion contains no contact springs (time.springs of the run that wrote it), so the "
         "spring of every contact starts unstretched.");
+  if (driven_ && scene_.in_motion && steps_done_ == 0)
+    if (const auto before = steps_per_cycle_of_file(scene_)) {
+      constexpr double kRounding = 1e-9;
+      const auto now = static_cast<double>(plan_.steps_per_period);
+      if (std::abs(*before / now - 1) > kRounding)
+        all.push_back(fmt::format(
+            "the run that wrote {} took {:.0f} steps per cycle, this one takes {:.0f}: it goes on "
+            "with another error of the step, not bit for bit (time.steps_per_contact).",
+            scene_.from.string(), *before, now));
+    }
   if (driven_) return all;
   System at_start = system_;
   begin_drive(scene_, plan_, at_start);

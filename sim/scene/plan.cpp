@@ -447,6 +447,11 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
     const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
     std::nth_element(sizes.begin(), middle, sizes.end(), smaller);
     plan.usual_radius = middle->radius, plan.usual_mass = middle->mass;
+    // A run in motion keeps the step of the run that drew the sizes, which the bounds of the spread set.
+    if (s.in_motion && s.spread != SizeSpread::none) {
+      const std::vector<BeadScale> drawn_from = announced(s);
+      sizes.insert(sizes.end(), drawn_from.begin(), drawn_from.end());
+    }
   }
   // Bounds: displacement per step, overlap, and the force at the overlap bound.
   plan.travel_bound = kTravelBound * 2 * std::min_element(sizes.begin(), sizes.end(), smaller)->radius;
