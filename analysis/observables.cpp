@@ -13,6 +13,7 @@
 #include "analysis/observable/timed_analysis.hpp"
 #include "core/cancellation.hpp"
 #include "core/counted.hpp"
+#include "trajectory/plate.hpp"
 
 // The list: an observable is NAME.cpp in a room of analysis/, which defines NAME_observable.
 #define TWINCELL_OBSERVABLES(EACH) \

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "analysis/motion/centre_of_mass.hpp"
-#include "analysis/motion/tracers.hpp"
 #include "analysis/observable/observable.hpp"
 #include "analysis/observable/results.hpp"
 #include "analysis/observable/timed_analysis.hpp"
@@ -25,6 +24,7 @@
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "trajectory/formats/h5md_file.hpp"
+#include "trajectory/plate.hpp"
 
 namespace twincell::cli {
 namespace {
@@ -88,7 +88,7 @@ double rest_height_of(const std::string& said, const std::vector<std::string>& r
   Frame frame;
   for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
     trajectory.read(f, frame);
-    const auto plate = analysis::plate_height(trajectory.info(), frame);
+    const auto plate = plate_height(trajectory.info(), frame);
     const double height = centre_of_mass_height(frame, trajectory.info().mass) - plate.value_or(std::nan(""));
     if (!std::isfinite(height))
       throw InputError({.file = said, .key = "--rest-height"},

@@ -8,6 +8,7 @@
 #include "analysis/force/branch_vector.hpp"
 #include "analysis/neighbours/bed_window.hpp"
 #include "analysis/observable/array_with_interval.hpp"
+#include "trajectory/plate.hpp"
 
 namespace twincell::analysis {
 namespace {
@@ -37,7 +38,7 @@ class Stress : public Observable {
     const BedWindow window = bed_window(centres, info_.box, kMargin);
     if (!(window.content > 0)) return;
     const double height = window.high.z() - window.low.z(),
-                 plate = std::isfinite(frame.plate_height) ? frame.plate_height : info_.box.lower.z();
+                 plate = plate_height(info_, frame).value_or(info_.box.lower.z());
     Tensor contact = Tensor::Zero();
     for (const ContactForce& c : frame.contact_forces) {
       const Vec3 branch = branch_vector(c, info_), force = c.force();

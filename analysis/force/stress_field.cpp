@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "analysis/force/branch_vector.hpp"
+#include "trajectory/plate.hpp"
 
 namespace twincell::analysis {
 namespace {
@@ -32,7 +33,7 @@ class StressField : public Observable {
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
     if (!info_.columns.contact_forces || !(cell_ > 0 && depth_ > 0)) return;
-    const double plate = std::isfinite(frame.plate_height) ? frame.plate_height : info_.box.lower.z();
+    const double plate = plate_height(info_, frame).value_or(info_.box.lower.z());
     for (const ContactForce& c : frame.contact_forces) {
       const Vec3 end = frame.position[static_cast<std::size_t>(c.i)] - plate * Vec3::UnitZ();
       if (const Vec3 branch = branch_vector(c, info_);

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "core/constants.hpp"
+#include "trajectory/plate.hpp"
+#include "trajectory/upright_gravity.hpp"
 
 namespace twincell::analysis {
 namespace {
@@ -83,11 +85,18 @@ class BedFlight : public Observable {
       reason_ = "the drive is not along z";
     else if (!info_.columns.phase || info_.phases_per_cycle < kFewestPhases)
       reason_ = fmt::format("the detection of flights needs at least {} frames per cycle", kFewestPhases);
+    if (!reason_.empty()) return;
+    gravity_ = info_.drive->gravity * upright_share_of_gravity(info_);
+    if (!(gravity_ > 0)) reason_ = "gravity does not pull the bed onto the plate";
   }
 
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
     if (!reason_.empty() || frame.phase < 0 || frame.cycle < 0) return;
+    if (plate_rests(info_, frame)) {
+      reason_ = "the plate rests";
+      return;
+    }
     if (!rise(frame)) return;
     const Instant now{frame.cycle * info_.phases_per_cycle + frame.phase, frame.time, height_};
     // Gap in the film: a flight in progress before the gap is discarded.
@@ -101,8 +110,7 @@ class BedFlight : public Observable {
     if (last_.size() < static_cast<std::size_t>(2 * stride_ + 1)) return;
     const Instant &before = last_.front(), &middle = last_[static_cast<std::size_t>(stride_)];
     const double step = (now.time - before.time) / 2;
-    judge(middle,
-          1 + (before.height - 2 * middle.height + now.height) / (step * step * info_.drive->gravity));
+    judge(middle, 1 + (before.height - 2 * middle.height + now.height) / (step * step * gravity_));
     last_.pop_front();
   }
 
@@ -186,13 +194,13 @@ class BedFlight : public Observable {
   void land(double carried) {
     const double frame = carried - flight_.back().time, reach = static_cast<double>(stride_) * frame,
                  fine = frame / 32;
-    Parabola path(flight_, -HUGE_VAL, info_.drive->gravity);
+    Parabola path(flight_, -HUGE_VAL, gravity_);
     auto take_off = taken_off(path, reach, frame);
     if (!take_off) return;
     // At the first instants the plate may still have supported part of the weight. The second fit leaves them
     // out.
     if (flight_.end()[-2].time > *take_off) {
-      path = Parabola(flight_, *take_off, info_.drive->gravity);
+      path = Parabola(flight_, *take_off, gravity_);
       take_off = taken_off(path, reach, frame);
       if (!take_off) return;
     }
@@ -218,9 +226,7 @@ class BedFlight : public Observable {
     // A bed that rested on the plate has h' = h'' = 0 at take-off. Noise separates the two zeros, or keeps h'
     // positive so that it has no zero. The later of the two zeros is then the best estimate.
     const auto rises = [&](double t) { return path.velocity(t) - plate(&Drive::velocity, t); };
-    const auto leaves = [&](double t) {
-      return rises(t) > 0 && plate(&Drive::acceleration, t) < -info_.drive->gravity;
-    };
+    const auto leaves = [&](double t) { return rises(t) > 0 && plate(&Drive::acceleration, t) < -gravity_; };
     const double earliest = std::max(first - 2 * reach, landed_);
     double inside = first + reach;
     if (!thrown_)
@@ -239,6 +245,7 @@ class BedFlight : public Observable {
   const TrajectoryInfo& info_;
   std::int64_t stride_;
   std::string reason_;
+  double gravity_ = 1;          ///< component along -z, which brings the bed back to the plate
   double height_ = 0;           ///< of the centre of mass, relative to the first frame
   std::vector<double> before_;  ///< height of each bead in the last frame; NaN if it was not detected
   std::deque<Instant> last_;

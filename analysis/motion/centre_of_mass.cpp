@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/motion/tracers.hpp"
+#include "trajectory/plate.hpp"
 
 namespace twincell::analysis {
 namespace {
@@ -84,7 +84,7 @@ class CentreOfMass : public Observable {
   [[nodiscard]] double velocity_scale() const {
     if (!info_.drive || info_.drive->ramp || info_.drive->peak_velocity() == 0)
       return std::numeric_limits<double>::quiet_NaN();
-    return info_.drive->peak_velocity() * info_.drive->peak_velocity();
+    return info_.drive->peak_velocity() * info_.drive->peak_velocity() / info_.drive->gravity;
   }
 
   [[nodiscard]] Result lift(const std::string& name, const Result& h, const std::string& unit,

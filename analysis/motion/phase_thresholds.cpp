@@ -7,9 +7,9 @@
 #include <numeric>
 
 #include "analysis/motion/tracer_line.hpp"
-#include "analysis/motion/tracers.hpp"
 #include "core/constants.hpp"
 #include "core/counted.hpp"
+#include "trajectory/plate.hpp"
 
 namespace twincell::analysis {
 namespace {

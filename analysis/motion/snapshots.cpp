@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "analysis/motion/tracers.hpp"
 #include "analysis/neighbours/neighbours.hpp"
 #include "analysis/neighbours/voronoi.hpp"
 #include "analysis/order/defects.hpp"
+#include "trajectory/plate.hpp"
 
 namespace twincell::analysis {
 namespace {

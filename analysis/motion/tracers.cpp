@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "trajectory/plate.hpp"
 
 namespace twincell::analysis {
 namespace {
@@ -133,14 +134,6 @@ TracerChoice line_of_tracers(const TrajectoryInfo& info, const Frame& first, dou
   choice.how = fmt::format(
       "tracers chosen here: in each column of width sigma the bead nearest to {} of the first frame", height);
   return choice;
-}
-
-std::optional<double> plate_height(const TrajectoryInfo& info, const Frame& frame) {
-  if (std::isfinite(frame.plate_height)) return frame.plate_height;
-  if (!info.drive || info.phases_per_cycle <= 0 || frame.phase < 0) return std::nullopt;
-  if (info.drive->axis != Axis::z) return 0.0;
-  const double fraction = static_cast<double>(frame.phase) / info.phases_per_cycle;
-  return info.drive->displacement(fraction, info.drive->cycle_at(frame.time, fraction));
 }
 
 }  // namespace twincell::analysis

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The line of tracer beads whose heights determine the phase of the bed, and the height of the plate.
+/// The line of tracer beads whose heights determine the phase of the bed.
 
 #include <array>
 #include <cstdint>
@@ -37,9 +37,5 @@ TracerChoice choose_tracers(const TrajectoryInfo& info, const Frame& first, cons
 /// The line of tracers at `above` sigma above mid-height, independent of any marked beads. Such lines show
 /// how much a result depends on the choice of the line. Empty if the frame contains no bead.
 TracerChoice line_of_tracers(const TrajectoryInfo& info, const Frame& first, double above);
-
-/// Height of the plate in `frame`, sigma: the measured height if the trajectory has it, else that of the
-/// drive at the frame's phase (0 for a horizontal drive). Absent if neither is known.
-std::optional<double> plate_height(const TrajectoryInfo& info, const Frame& frame);
 
 }  // namespace twincell::analysis

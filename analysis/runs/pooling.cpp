@@ -316,6 +316,10 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
     numbers("the number of phases per cycle", p.phases_per_cycle, q.phases_per_cycle, 0);
     words("drive:", p.drive ? "known" : "not known", q.drive ? "known" : "not known");
     if (p.drive) {
+      const auto axis = [](const TrajectoryInfo& t) {
+        return std::string(1, "xyz"[static_cast<int>(t.drive->axis)]);
+      };
+      words("the drive is along", axis(p), axis(q));
       numbers("Gamma", p.drive->gamma(), q.drive->gamma(), kSameDrive);
       numbers("the gravity", p.drive->gravity, q.drive->gravity, kSameDrive);
       numbers("omega", p.drive->omega, q.drive->omega, kSameDrive);

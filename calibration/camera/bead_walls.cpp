@@ -11,6 +11,7 @@
 
 #include "calibration/fit/curve_fit.hpp"
 #include "core/error.hpp"
+#include "trajectory/plate.hpp"
 
 namespace twincell::calibration {
 namespace {
@@ -47,10 +48,11 @@ BeadWalls walls_from_beads(const TrajectorySource& trajectory) {
   const double middle = 0.5 * (info.box.lower.x() + info.box.upper.x());
   for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
     trajectory.read(f, frame);
-    const double plate = std::isfinite(frame.plate_height) ? frame.plate_height : 0;
+    const double plate = plate_height(info, frame).value_or(0),
+                 aside = sideways_displacement(info, frame).x();
     for (std::size_t i = 0; i < info.n_beads; ++i) {
       if (!frame.present(i) || !std::isfinite(frame.position[i].x())) continue;
-      const double r = radius_of(info.radius, i), x = frame.position[i].x(),
+      const double r = radius_of(info.radius, i), x = frame.position[i].x() - aside,
                    z = frame.position[i].z() - plate;
       auto& slices = x < middle ? left : right;
       slices[std::lround(std::floor(z / kSlice))].emplace_back(z, x < middle ? x - r : x + r);

@@ -16,6 +16,7 @@
 #include "imaging/camera/random.hpp"
 #include "imaging/camera/synthetic_camera.hpp"
 #include "imaging/codecs/codecs.hpp"
+#include "trajectory/plate.hpp"
 
 namespace twincell::imaging {
 
@@ -64,7 +65,7 @@ void check_times(const TrajectorySource& trajectory, const CameraOptions& option
                                                      : "the time from frame to frame"));
 }
 
-/// The files of a film state one drive, and its side walls do not move.
+/// The files of a film state one drive, which moves the plate along z, and its side walls do not move.
 void check_drive(const TrajectorySource& trajectory) {
   const std::optional<Drive>& drive = trajectory.info().drive;
   if (drive && drive->ramp)
@@ -75,6 +76,20 @@ void check_drive(const TrajectorySource& trajectory) {
     throw ConfigError(
         Where{.file = trajectory.name(), .key = "drive.horizontal"},
         "the cell also moves along x, but the walls of a film do not; `draw` draws such a run.");
+  if (drive && drive->axis != Axis::z)
+    throw ConfigError(Where{.file = trajectory.name(), .key = "drive.axis"},
+                      fmt::format("the cell moves along {}, but the walls of a film do not, and a CELL.toml "
+                                  "states a drive along z; `draw` draws such a run.",
+                                  "xyz"[static_cast<int>(drive->axis)]));
+  Frame frame;
+  const auto cycle = static_cast<std::size_t>(std::max(1, trajectory.info().phases_per_cycle));
+  for (std::size_t f = 0; f < std::min(cycle, trajectory.n_frames()); ++f) {
+    trajectory.read(f, frame);
+    if (plate_rests(trajectory.info(), frame))
+      throw ConfigError(Where{.file = trajectory.name(), .key = "cell.bottom_motion"},
+                        "the plate rests while the drive moves other walls, but in a film the plate moves; "
+                        "`draw` draws such a run.");
+  }
 }
 
 std::string cell_text(const SyntheticCamera& camera, const TrajectoryInfo& info, const CameraOptions& options,

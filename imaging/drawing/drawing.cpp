@@ -12,6 +12,7 @@
 #include "imaging/camera/movie.hpp"
 #include "imaging/track/annotation.hpp"
 #include "imaging/track/overlay.hpp"
+#include "trajectory/plate.hpp"
 #include "trajectory/time_unit.hpp"
 
 namespace twincell::imaging {
@@ -48,14 +49,8 @@ bool visible(const Frame& frame, std::size_t i) {
   return frame.present(i) && frame.position[i].allFinite();
 }
 
-/// The axis along which the cell is driven, if it is a horizontal one. The whole cell then moves.
-std::optional<int> sideways_axis(const TrajectoryInfo& info) {
-  if (!info.drive || info.drive->axis == Axis::z) return std::nullopt;
-  return static_cast<int>(info.drive->axis);
-}
-
 double plate_of(const Frame& frame, const TrajectoryInfo& info) {
-  return std::isfinite(frame.plate_height) && !sideways_axis(info) ? frame.plate_height : info.box.lower.z();
+  return plate_height(info, frame).value_or(info.box.lower.z());
 }
 
 /// Drive cycles that are over in a frame.
@@ -63,11 +58,9 @@ double cycles_of(const Frame& frame, const TrajectoryInfo& info) {
   return info.drive->cycles_at(frame.time);
 }
 
-/// Horizontal displacement of the cell; Frame::plate_height is along the axis of the drive.
+/// Horizontal displacement of the cell.
 Vec3 shift_of(const Frame& frame, const TrajectoryInfo& info) {
-  Vec3 shift = Vec3::Zero();
-  if (const auto axis = sideways_axis(info); axis && std::isfinite(frame.plate_height))
-    shift[*axis] = frame.plate_height;
+  Vec3 shift = sideways_displacement(info, frame);
   if (info.drive && info.drive->horizontal && !info.box.periodic(Axis::x)) {
     const double cycles = cycles_of(frame, info);
     shift.x() += info.drive->horizontal_displacement(cycles - std::floor(cycles));

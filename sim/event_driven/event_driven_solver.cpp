@@ -83,6 +83,9 @@ class EventDrivenSolver : public Solver {
     steps_.reset();
     mark_as_left(s);
     loop_->load(in);
+    // Contact memories follow from what was loaded; they are asked for before the next advance.
+    System at = s;
+    loop_->write(at);
   }
   [[nodiscard]] std::string description() const override {
     return "free flight between contacts; where three bodies meet: " + make_steps_.few()->description();

@@ -15,6 +15,7 @@
 #include "core/provenance.hpp"
 #include "sim/run/simulation.hpp"
 #include "sim/scene/plan.hpp"
+#include "sim/scene/plate_motion.hpp"
 
 namespace twincell::sim {
 
@@ -413,8 +414,8 @@ std::string input_text(const Model& m) {
       "dump_modify     frames delay {} sort id format float %.17g\n"
       "thermo          {}\n"
       "run             {}\n\n",
-      per_phase, periods ? "xu yu zu" : "x y z", m.first_step + m.discard * m.steps_per_period,
-      m.steps_per_period, (m.discard + m.cycles) * m.steps_per_period - per_phase);
+      per_phase, periods ? "xu yu zu" : "x y z", m.discard * m.steps_per_period, m.steps_per_period,
+      std::max<std::int64_t>(0, (m.discard + m.cycles) * m.steps_per_period - per_phase - m.first_step));
   return text + "# The scene:\n#\n" + commented(m.resolved);
 }
 
@@ -443,8 +444,8 @@ LammpsDeck lammps_deck(const Scene& scene, Progress& progress) {
 }
 
 LammpsDeck lammps_deck(const Scene& scene, const TrajectorySource& trajectory, std::size_t index) {
-  const Plan plan = make_plan(scene);
-  Model m = model_of(scene, plan);
+  const Plan announced = make_plan(scene);
+  static_cast<void>(model_of(scene, announced));  // refuses unsupported features first
   const TrajectoryInfo& info = trajectory.info();
   if (index >= trajectory.n_frames())
     refuse(scene, "",
@@ -455,6 +456,16 @@ LammpsDeck lammps_deck(const Scene& scene, const TrajectorySource& trajectory, s
   const std::string name = fmt::format("frame {} of {}", index, trajectory.name());
   if (frame.phase < 0 || info.phases_per_cycle <= 0)
     refuse(scene, "", name + " has no drive phase, so the position of its plate is unknown.");
+  const std::vector<DeckBead> beads = beads_of_frame(scene, info, frame, announced.rotation, name);
+  std::vector<Bead> sizes;  // those of a file set the step, as in `simulate`
+  for (const DeckBead& b : beads)
+    sizes.push_back({.vx = b.velocity.x(),
+                     .vz = b.velocity.z(),
+                     .radius = b.radius,
+                     .mass = b.mass,
+                     .vy = b.velocity.y()});
+  const Plan plan = make_plan(scene, sizes);
+  Model m = model_of(scene, plan);
   const std::int64_t steps = m.steps_per_period * frame.phase;
   if (steps % info.phases_per_cycle != 0)
     refuse(scene, "time.phases",
@@ -464,11 +475,12 @@ LammpsDeck lammps_deck(const Scene& scene, const TrajectorySource& trajectory, s
   constexpr double kSamePlate = 1e-9;
   const double ours =
       m.drive.displacement(static_cast<double>(m.first_step) / static_cast<double>(m.steps_per_period));
-  if (!std::isnan(frame.plate_height) && std::abs(frame.plate_height - ours) > kSamePlate)
+  if (!std::isnan(frame.plate_height) && std::abs(frame.plate_height - ours) > kSamePlate &&
+      (plate_follows_drive(scene) || frame.plate_height != 0))
     refuse(scene, "drive",
            fmt::format("the plate of {} is at {:g}, but this drive puts it at {:g}.", name,
                        frame.plate_height, ours));
-  m.beads = beads_of_frame(scene, info, frame, m.rotation, name);
+  m.beads = beads;
   return deck_of(m, scene, plan);
 }
 

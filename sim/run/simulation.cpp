@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
 #include "sim/run/contact_forces.hpp"
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/plate_motion.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "sim/system/cell_grid.hpp"
+#include "trajectory/formats/h5md_file.hpp"
 #include "trajectory/temperature.hpp"
 
 namespace twincell::sim {
@@ -59,6 +62,19 @@ std::vector<ContactMemory> readable(const Scene& scene, const Plan& plan,
   return contacts;
 }
 
+/// Steps per cycle of the run whose frame a start in motion continues with its contact springs; absent if the
+/// start is another one.
+std::optional<double> steps_per_cycle_of_file(const Scene& scene) {
+  if (scene.start != StartKind::trajectory) return std::nullopt;
+  const H5mdReader file(scene.from);
+  if (file.info().source != "simulation" || !file.info().columns.contacts || !file.info().drive)
+    return std::nullopt;
+  Frame frame;
+  file.read(scene.frame, frame);
+  if (frame.step <= 0 || !(frame.time > 0)) return std::nullopt;
+  return file.info().drive->period() * static_cast<double>(frame.step) / frame.time;
+}
+
 /// Largest relative speed of a moving wall and a bead that touches it.
 double largest_kick(const System& s) {
   const Vec3 plate = s.plate_velocity_in_space();
@@ -105,8 +121,10 @@ RunState placed(const Scene& scene, Progress& progress) {
   state.tracer = std::move(start.tracer);
   if (!scene.in_motion) return state;
   state.driven = true;
-  state.step = first_step(plan, phase);
-  state.contacts = readable(scene, plan, std::move(start.contacts));
+  // The beads of a file, not those of the scene, set the number of steps of the run's cycles.
+  const Plan of_run = make_plan(scene, state.beads);
+  state.step = first_step(of_run, phase);
+  state.contacts = readable(scene, of_run, std::move(start.contacts));
   state.forces = std::move(start.forces);
   state.rim_speeds = std::move(start.rim_speeds);
   if (state.tracer.empty()) state.tracer = choose_tracers(state.beads, scene);
@@ -212,6 +230,16 @@ std::vector<std::string> Simulation::warnings() const {
     all.push_back(
         "the start in motion contains no contact springs (time.springs of the run that wrote it), so the "
         "spring of every contact starts unstretched.");
+  if (driven_ && scene_.in_motion && steps_done_ == 0)
+    if (const auto before = steps_per_cycle_of_file(scene_)) {
+      constexpr double kRounding = 1e-9;
+      const auto now = static_cast<double>(plan_.steps_per_period);
+      if (std::abs(*before / now - 1) > kRounding)
+        all.push_back(fmt::format(
+            "the run that wrote {} took {:.0f} steps per cycle, this one takes {:.0f}: it goes on "
+            "with another error of the step, not bit for bit (time.steps_per_contact).",
+            scene_.from.string(), *before, now));
+    }
   if (driven_) return all;
   System at_start = system_;
   begin_drive(scene_, plan_, at_start);
@@ -274,6 +302,8 @@ TrajectoryInfo Simulation::trajectory_info() const {
   info.scale = scene_.scale;
   info.conditions = conditions_of(scene_, system_.beads.size());
   info.source = "simulation";
+  // Until a file's provenance replaces it: observables find the scene here, as in a file.
+  info.provenance_json = nlohmann::json{{"config", scene_.resolved}}.dump();
   for (const Bead& b : system_.beads) {
     info.radius.push_back(b.radius);
     info.mass.push_back(b.mass);
@@ -288,7 +318,7 @@ Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
   frame.time = system_.time();
   frame.cycle = cycle;
   frame.phase = phase;
-  frame.plate_height = system_.plate_height();
+  frame.plate_height = plate_follows_drive(scene_) ? system_.plate_height() : 0;
   for (const Bead& b : system_.beads) {
     frame.position.emplace_back(b.x, b.y, b.z);
     frame.velocity.emplace_back(b.vx, b.vy, b.vz);

@@ -305,13 +305,31 @@ void keep_shorter(std::vector<TimeLimit>& limits, const TimeLimit& limit) {
   limits.push_back(limit);
 }
 
+/// Time that the tangential law needs to be resolved, t0; infinite without a limit. Mindlin's stiffness grows
+/// with the overlap and is not bounded by that of a normal law with a stiffness k_n of its own: half a period
+/// of its spring at the overlap of an elastic impact, v sqrt(m_eff/k_n).
+double tangential_time(const ContactLaws& laws, const PairScale& pair, double speed) {
+  const double own = std::visit([&](const auto& law) { return law.shortest_time(pair); }, laws.tangential);
+  const auto* mindlin = std::get_if<MindlinSlider>(&laws.tangential);
+  if (mindlin == nullptr) return own;
+  const double overlap = std::visit(
+      [&](const auto& law) {
+        if constexpr (requires { law.k_n; })
+          return speed * std::sqrt(pair.m_eff / law.k_n);
+        else
+          return 0.0;  // Hertz, whose stiffness grows alike: its own limit resolves both (V2.17)
+      },
+      laws.normal);
+  const double k_t = mindlin->stiffness(pair.r_eff) * std::sqrt(overlap);
+  return k_t > 0 ? std::min(own, std::numbers::pi / std::sqrt(k_t * pair.inv_m_t)) : own;
+}
+
 void add_limits(const std::string& kind, const ContactLaws& laws, const PairScale& pair, double speed,
                 std::vector<TimeLimit>& limits) {
   keep_shorter(limits,
                {kind + ", normal contact",
                 std::visit([&](const auto& law) { return law.shortest_time(pair, speed); }, laws.normal)});
-  const double tangential =
-      std::visit([&](const auto& law) { return law.shortest_time(pair); }, laws.tangential);
+  const double tangential = tangential_time(laws, pair, speed);
   if (std::isfinite(tangential)) keep_shorter(limits, {kind + ", tangential contact", tangential});
   const double rolling = std::visit([&](const auto& law) { return law.shortest_time(pair); }, laws.rolling);
   if (std::isfinite(rolling)) keep_shorter(limits, {kind + ", rolling", rolling});
@@ -447,6 +465,11 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
     const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
     std::nth_element(sizes.begin(), middle, sizes.end(), smaller);
     plan.usual_radius = middle->radius, plan.usual_mass = middle->mass;
+    // A run in motion keeps the step of the run that drew the sizes, which the bounds of the spread set.
+    if (s.in_motion && s.spread != SizeSpread::none) {
+      const std::vector<BeadScale> drawn_from = announced(s);
+      sizes.insert(sizes.end(), drawn_from.begin(), drawn_from.end());
+    }
   }
   // Bounds: displacement per step, overlap, and the force at the overlap bound.
   plan.travel_bound = kTravelBound * 2 * std::min_element(sizes.begin(), sizes.end(), smaller)->radius;

@@ -132,6 +132,12 @@ void require_record_lasts(const Drive& drive, std::int64_t cycles, const Where& 
 
 namespace {
 
+/// The name of Drive::peak_fall, which is downward only along z.
+std::string fall_in_words(const Drive& drive) {
+  if (drive.axis == Axis::z) return "downward acceleration";
+  return fmt::format("acceleration along -{}", "xyz"[static_cast<int>(drive.axis)]);
+}
+
 /// The end of the ramp and the strength of the horizontal motion.
 std::string changes_in_words(const Drive& drive, double g) {
   std::string text;
@@ -159,13 +165,13 @@ std::string beyond_the_sine(const Drive& drive, double gravity) {
     const RecordedMotion::Range& range = drive.recorded->range();
     return fmt::format(
         " of its sine A = {:.6g} sigma ({:.3g} % of its mean square), {} samples every {:.4g} t0, "
-        "displacement {:.4g} to {:.4g} sigma, largest downward acceleration {:.6g} g",
+        "displacement {:.4g} to {:.4g} sigma, largest {} {:.6g} g",
         drive.amplitude, 100 * share_of_sine(drive), drive.recorded->samples().size(), info.interval,
-        range.lowest, range.highest, range.fall / g);
+        range.lowest, range.highest, fall_in_words(drive), range.fall / g);
   }
   const std::string changes = changes_in_words(drive, g);
   if (drive.harmonics.empty()) return changes;
-  return fmt::format(" of the first harmonic, largest downward acceleration {:.6g} g{}",
+  return fmt::format(" of the first harmonic, largest {} {:.6g} g{}", fall_in_words(drive),
                      drive.peak_fall() / g, changes);
 }
 

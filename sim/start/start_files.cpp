@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "core/table_text.hpp"
+#include "sim/scene/plate_motion.hpp"
 #include "sim/start/start.hpp"
 #include "sim/start/start_parts.hpp"
 #include "trajectory/formats/h5md_file.hpp"
@@ -87,7 +88,8 @@ Start start_in_motion(const Scene& scene, const TrajectoryInfo& info, const Fram
   start.phase = scene.phase ? *scene.phase : static_cast<double>(frame.phase) / info.phases_per_cycle;
   constexpr double kSamePlate = 1e-9;
   if (const double plate = scene.drive.displacement(*start.phase);
-      !std::isnan(frame.plate_height) && std::abs(plate - frame.plate_height) > kSamePlate)
+      !std::isnan(frame.plate_height) && std::abs(plate - frame.plate_height) > kSamePlate &&
+      (plate_follows_drive(scene) || frame.plate_height != 0))
     refuse(
         fmt::format(" has its plate at {:g} sigma, but this drive puts it at {:g}; to change the amplitude, "
                     "start at a frame of phase 0.",

@@ -98,6 +98,34 @@ void expect_resumable(const std::string& laws, const std::string& integrator) {
   EXPECT_TRUE(remembered > 0 || !whole.plan().history) << text;
 }
 
+// The contact forces of a frame follow from the contact memories. After a restart the first frame may come
+// before the first step.
+TEST(Checkpoint, EventDrivenMotionRemembersItsContacts) {
+  const TemporaryFolder folder;
+  const Scene scene = read_scene_text(
+      "[cell]\nwidth = 10.0\nsides = \"periodic\"\n[beads]\ncount = 40\n[contact]\nk_n = 2e4\ngamma_n = "
+      "60\nmu = 0.4\nk_t = 3e4\ngamma_t = 20\n[drive]\nomega = 1.0\nk_m = 30.0\n[start]\nkind = "
+      "\"random\"\nseed = 3\n[time]\nstepping = \"event-driven\"\ndiscard = 2\ncycles = 3\nphases = "
+      "100\ncontacts = true\nsprings = true\n",
+      "s");
+  Simulation whole(scene, placed(scene));
+  Keeping driving(whole, 1);
+  MemoryTrajectory frames;
+  whole.run(frames, driving);
+  std::size_t remembered = 0, compared = 0;
+  for (const RunState& state : driving.states) {
+    if (state.contacts.empty() || !state.driven || compared > 20) continue;
+    write_checkpoint(folder / "state.h5", {scene.resolved, "{}", "p", {{3, "abc"}}, state});
+    const RunState read = read_checkpoint(folder / "state.h5").state;
+    Simulation rest(scene, read);
+    EXPECT_TRUE(same_bits(rest.state(), state)) << "before a step, step " << state.step;
+    remembered += state.contacts.size();
+    ++compared;
+  }
+  EXPECT_GT(remembered, 10U);
+  EXPECT_EQ(frames.frames().size(), 300U);
+}
+
 TEST(Checkpoint, EveryLawGoesOnToTheBit) {
   const std::vector<std::string> laws = {
       "k_n = 1e4\ngamma_n = 10.0\ngamma_t = 10.0\nk_t = 2e3\n",

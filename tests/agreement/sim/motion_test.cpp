@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <numbers>
 
 #include "sim/run/simulation.hpp"
@@ -84,6 +85,47 @@ TEST(InMotion, AFrameWithItsSpringsGoesOnAsTheRunDid) {
     MemoryTrajectory without(bare.trajectory_info());
     bare.run(without);
     EXPECT_GE(apart(whole, without, 10), 1e-5) << integrator;
+  }
+}
+
+// Sizes and masses of a file set the step of the run, and the run begins at the step of its drive phase.
+TEST(InMotion, BeadsOfATableBeginAtTheStatedPhase) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "beads.csv") << "x,z,radius,mass\n2,5,0.5,0.05\n4,5,0.4,0.8\n";
+  const Simulation run(read_scene_text(
+      "[cell]\nwidth = 6.0\n[contact]\nk_n = 1e5\nrestitution = 0.6\nmu = 0.0\n[drive]\ngamma = 2.0\n"
+      "omega = 2.0\nphase = 0.25\n[start]\nkind = \"table\"\nfrom = \"" +
+          (folder / "beads.csv").string() +
+          "\"\nin_motion = true\n[time]\ndiscard = 0\ncycles = 1\nphases = 40\n",
+      "s"));
+  EXPECT_GT(run.plan().steps_per_period, make_plan(run.scene()).steps_per_period);
+  EXPECT_EQ(4 * run.system().step, run.plan().steps_per_period);
+  EXPECT_NEAR(run.system().plate_height(), 0.5, 1e-15);  // A = Gamma/omega^2 at its top
+}
+
+TEST(InMotion, UnequalBeadsGoOnAsTheRunDid) {
+  const TemporaryFolder folder;
+  for (const std::string sizes : {"spread = \"uniform\"\nspread_width = 0.2\n", "mass = 0.7\n"}) {
+    const std::string text =
+        "[cell]\nwidth = 8.0\n[beads]\ncount = 24\n" + sizes +
+        "[contact]\nk_n = 1e5\nrestitution = 0.6\nk_t = 3e4\n[drive]\ngamma = 2.0\nomega = 2.0\n[start]\n"
+        "kind = \"random\"\n[time]\ndiscard = 0\ncycles = 4\nphases = 20\nsprings = true\n";
+    const MemoryTrajectory whole = film(read_scene_text(text, "whole"));
+    save(whole, folder / "whole.h5", true);
+    const std::vector<std::string> start = {"start.kind=trajectory",
+                                            "start.from=" + (folder / "whole.h5").string(),
+                                            "start.frame=" + std::to_string(kFrom), "start.in_motion=true"};
+    Simulation run(read_scene_text(text, "rest", start));
+    EXPECT_TRUE(run.warnings().empty()) << run.warnings().front();
+    MemoryTrajectory rest(run.trajectory_info());
+    run.run(rest);
+    EXPECT_EQ(apart(whole, rest, 18), 0) << sizes;
+    // Other steps go on too, but a note says that they are others.
+    std::vector<std::string> finer = start;
+    finer.emplace_back("time.steps_per_contact=30");
+    const std::vector<std::string> notes = Simulation(read_scene_text(text, "finer", finer)).warnings();
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_NE(notes.front().find("not bit for bit"), std::string::npos) << notes.front();
   }
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "core/error.hpp"
 #include "sim/run/make_solver.hpp"
@@ -37,6 +38,32 @@ TEST(TimeStep, H6_CoarseStepsAreWarnedOfOrRefused) {
   expect_refusal<ConfigError>([] { good({"time.steps_per_contact=5"}); },
                               "time.steps_per_contact: 5 is out of range; the value must be at least 6");
   EXPECT_NO_THROW(plan_of({"time.steps_per_contact=5", "time.allow_unstable_step=true"}));
+}
+
+// A linear normal law has a stiffness of its own: Mindlin's spring, whose stiffness 2 Y sqrt(R delta)/((2 -
+// nu) (1 + nu)) belongs to another one, can be far stiffer. Half its period at the overlap of an elastic
+// impact, delta = v sqrt(m_eff/k_n), limits the step.
+TEST(TimeStep, OfMindlinsSpringWithALinearNormalLaw) {
+  const std::vector<std::string> set = {"contact.tangential=mindlin", "contact.k_n=1e5",
+                                        "contact.youngs_modulus=1e8", "contact.poisson_ratio=0.3"};
+  const auto limit_of = [](const Plan& plan) -> std::optional<double> {
+    for (const TimeLimit& limit : plan.limits)
+      if (limit.name == "bead-bead, tangential contact") return limit.time;
+    return std::nullopt;
+  };
+  const Scene scene = good(set);
+  const Plan plan = make_plan(scene);
+  // Discs of mass 1 and radius 1/2: m_eff = 1/2, R_eff = 1/4, 1/m_t = 2 (1 + m R^2/I) = 6. Beads meet at
+  // twice the largest speed of the plate, or at sqrt(2 g sigma).
+  const double v = std::max(2 * scene.drive.velocity_bound(), std::sqrt(2.0));
+  const double overlap = v * std::sqrt(0.5 / 1e5), k_t = 2e8 * std::sqrt(0.25 * overlap) / (1.7 * 1.3);
+  ASSERT_TRUE(limit_of(plan));
+  EXPECT_NEAR(*limit_of(plan) / (std::numbers::pi / std::sqrt(6 * k_t)), 1, 1e-12);
+  EXPECT_NEAR(plan.dt * scene.steps_per_contact / plan.shortest().time, 1, 1e-2);
+  EXPECT_LE(plan.shortest().time, *limit_of(plan));
+  EXPECT_FALSE(
+      limit_of(plan_of({"contact.normal=hertz", "contact.tangential=mindlin", "contact.youngs_modulus=1e8"})))
+      << "Hertz's stiffness grows alike";
 }
 
 TEST(TimeStep, UnstatedItIsTheFrontsAndStandsInTheResolvedScene) {

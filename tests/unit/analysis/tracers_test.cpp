@@ -80,18 +80,6 @@ TEST(Tracers, GivenByIdOrByBand) {
   EXPECT_FALSE(refusal({{3}, {{1, 2}}}).empty());
 }
 
-TEST(PlateHeight, MeasuredBeforeDriveBeforeNothing) {
-  TrajectoryInfo info;
-  Frame frame;
-  EXPECT_FALSE(plate_height(info, frame).has_value());
-  info.drive = Drive{Axis::z, 2, 1};
-  info.phases_per_cycle = 4;
-  frame.phase = 1;
-  EXPECT_NEAR(*plate_height(info, frame), 2, 1e-15);  // A sin(pi/2)
-  frame.plate_height = 0.7;
-  EXPECT_EQ(*plate_height(info, frame), 0.7);
-}
-
 TEST(MatchRuns, ByGammaWithinTheToleranceAndByLayers) {
   const auto run = [](Side side, double gamma, double n_l, BedPhase phase) {
     twincell::analysis::Run r;

@@ -1,4 +1,5 @@
 // The height of the centre of mass of beds whose motion is known in closed form.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -38,6 +39,22 @@ TEST(CentreOfMass, OfTheBouncingRigidBed) {
   // All cycles are equal, so there is no scatter from which to compute an interval.
   EXPECT_FALSE(find_result(results, "delta_h_cm").interval);
   EXPECT_FALSE(find_result(results, "delta_h_cm").no_interval.empty());
+}
+
+// delta_h_bar is in units of V_p^2/g. With g -> k^2 g and omega -> k omega, lengths and Gamma stay the same,
+// V_p^2/g does, and so does the lift in its units.
+TEST(CentreOfMass, LiftInUnitsOfTheDriveFollowsTheGravityOfTheRun) {
+  const auto film = test::rigid_bed({.gamma = 1.5, .phases = 40, .cycles = 6});
+  const AnalysisOptions options{.rest_height = 0.1};
+  const double expected = find_result(analyze(film, options), "delta_h_cm").value() / 2.25;
+  for (const double faster : {0.5, 3.0}) {
+    MemoryTrajectory scaled = film;
+    scaled.info().drive->gravity = faster * faster;
+    scaled.info().drive->omega *= faster;
+    test::validate({"V5.16", fmt::format("delta h_bar of the rigid bed at g = {:g}", faster * faster),
+                    expected, 1e-12 * expected, "similarity"},
+                   find_result(analyze(scaled, options), "delta_h_bar").value());
+  }
 }
 
 TEST(CentreOfMass, WithoutARestHeightThereIsNoLift) {

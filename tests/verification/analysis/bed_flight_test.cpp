@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
 
@@ -69,6 +70,45 @@ TEST(BedFlight, FollowsTheGravityOfTheRun) {
     EXPECT_NEAR(measured(scaled) * faster / measured(film), 1, 1e-8) << faster;
     EXPECT_NEAR(measured(scaled, "flight_share"), measured(film, "flight_share"), 1e-8) << faster;
   }
+}
+
+// Along z a bed in a tilted cell flies as one under g cos(theta): with |g| larger by 1/cos(theta) its film is
+// the same.
+TEST(BedFlight, FollowsTheComponentOfGravityThatPointsAtThePlate) {
+  const auto film = test::rigid_bed({.gamma = 1.7, .columns = 8, .rows = 3, .phases = 20, .cycles = 8});
+  const struct {
+    std::string cell;
+    double g;  // |g| of a cell whose g_z is -1
+  } cells[] = {{"tilt = 20.0", 1 / std::cos(20 * kTurn / 360)},
+               {"tilt = -42", 1 / std::cos(42 * kTurn / 360)},
+               {"gravity = [0.75, -1.0]", 1.25},
+               {"dimension = 3\ngravity = [0.0, -0.75, -1]", 1.25},
+               {"gravity = 1.0", 1}};
+  for (const auto& [cell, g] : cells) {
+    MemoryTrajectory tilted = film;
+    tilted.info().drive->gravity = g;
+    tilted.info().provenance_json = nlohmann::json{{"config", "[cell]\n" + cell + "\n"}}.dump();
+    test::validate({"V5.17", "flight of the rigid bed at Gamma = 1.7, |g| = " + text(g) + " g_z, t0",
+                    flight_of_rigid_bed(1.7), 1e-6 * flight_of_rigid_bed(1.7), "closed form"},
+                   measured(tilted));
+    EXPECT_NEAR(measured(tilted, "flight_share"), measured(film, "flight_share"), 1e-9) << cell;
+  }
+  MemoryTrajectory hanging = film;
+  hanging.info().provenance_json = R"({"config": "[cell]\ngravity = [0.0, 1.0]\n"})";
+  EXPECT_NE(find_result(analyze(hanging, {.only = {"flight_time"}}), "flight_time")
+                .absent.find("does not pull the bed onto the plate"),
+            std::string::npos);
+}
+
+// Walls along z move, the plate does not: its stored height is 0, and the drive throws nothing.
+TEST(BedFlight, OfAPlateThatRestsIsUnknown) {
+  const auto film = test::rigid_bed({.gamma = 1.7, .columns = 8, .rows = 3, .phases = 20, .cycles = 8});
+  MemoryTrajectory rests(film.info());
+  for (Frame frame : film.frames()) {
+    frame.plate_height = 0;
+    rests.append(frame);
+  }
+  EXPECT_EQ(find_result(analyze(rests, {.only = {"flight_time"}}), "flight_time").absent, "the plate rests");
 }
 
 TEST(BedFlight, OfTheRigidBedIsThatOfItsParabola) {

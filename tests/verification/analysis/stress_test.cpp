@@ -148,6 +148,24 @@ TEST(Stress, OfAColumnIsTheWeightAbove) {
   }
 }
 
+TEST(Stress, OfABedThatIsDrivenSidewaysHasTheHeightsOfABedAtRest) {
+  // A drive along x displaces the plate sideways: heights above it are z, whatever plate_height holds.
+  const MemoryTrajectory rests = sim::column_at_rest(2);
+  MemoryTrajectory driven(rests.info());
+  driven.info().drive = Drive{Axis::x, 0.8, 1};
+  driven.info().columns.plate_height = true;
+  for (Frame frame : rests.frames()) {
+    frame.plate_height = 0.8;
+    driven.append(frame);
+  }
+  for (const char* name : {"stress_zz_z", "stress_z", "stress_field", "stress_field_z"}) {
+    const auto expected = values_of(rests, name), found = values_of(driven, name);
+    ASSERT_EQ(found.size(), expected.size()) << name;
+    for (std::size_t k = 0; k < found.size(); ++k)
+      EXPECT_NEAR(found[k], expected[k], 1e-12 * std::abs(expected[k])) << name << " " << k;
+  }
+}
+
 TEST(Stress, KineticPartIsTheTemperature) {
   // Beads of mass 1 with speed c in both senses of each axis: m <v_a^2> = c^2/2 along each axis.
   MemoryTrajectory t = empty(2, Vec3(8, 1, 4), true);
