@@ -333,6 +333,16 @@ ForeignTrajectory::ForeignTrajectory(const std::filesystem::path& path, const Fo
       }))
     d.assumption += std::string(d.assumption.empty() ? "" : " ") +
                     "the radii of beads change by more than a tenth from frame to frame: each has its mean.";
+  const auto lighter = [](const auto& a, const auto& b) { return a.second.mass < b.second.mass; };
+  constexpr double kSameMass = 1e-6;  // of single precision
+  if (reader.columns().mass && !d.o.bead_mass)
+    if (const auto [least, most] = std::minmax_element(seen.begin(), seen.end(), lighter);
+        most->second.mass > (1 + kSameMass) * least->second.mass)
+      d.assumption += std::string(d.assumption.empty() ? "" : " ") +
+                      fmt::format(
+                          "the masses of the file, {:.6g} to {:.6g}, are not read, because their unit "
+                          "is not known (--bead-mass; 1 for a file that twincell exported).",
+                          least->second.mass, most->second.mass);
   const Vec3 along_y = reader.upright(Vec3(0, 1, 0));
   d.complete(first, reader.columns(), along_y.minCoeff() < 0);
 }

@@ -8,10 +8,11 @@
 
 namespace twincell {
 
-ContactListWriter::ContactListWriter(h5::Handle group, hid_t value_type)
-    : group_(std::move(group)), value_type_(value_type) {
+ContactListWriter::ContactListWriter(h5::Handle group, hid_t value_type, std::size_t each)
+    : group_(std::move(group)), value_type_(value_type), each_(each) {
   count_ = h5::Series(group_.get(), "count", H5T_STD_I64LE, {}, 1024);
   pairs_ = h5::Series(group_.get(), "pairs", H5T_STD_I32LE, {2}, 1024);
+  if (each_ > 0) values_ = h5::Series(group_.get(), "values", value_type_, {each_}, 1024);
 }
 
 void ContactListWriter::append(const std::vector<std::int32_t>& pairs, const std::vector<double>& values) {

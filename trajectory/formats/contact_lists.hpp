@@ -16,8 +16,9 @@ namespace twincell {
 class ContactListWriter {
  public:
   ContactListWriter() = default;
-  /// \param value_type file type of `values`; K is determined by the first contact
-  ContactListWriter(h5::Handle group, hid_t value_type);
+  /// \param value_type file type of `values`
+  /// \param each K; 0: it is determined by the first contact, and without any there is no `values`
+  ContactListWriter(h5::Handle group, hid_t value_type, std::size_t each = 0);
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(group_); }
   /// Appends a frame. \throws RunError if its contacts have a number of values that differs from K
   void append(const std::vector<std::int32_t>& pairs, const std::vector<double>& values);

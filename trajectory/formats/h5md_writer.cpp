@@ -195,7 +195,7 @@ void H5mdWriter::Impl::create_parameters() {
     h5::Handle group = h5::create_group(ours.get(), "contact_forces");
     h5::write_attribute(group.get(), "columns", h5md::kForceColumns);
     if (!info.walls.empty()) h5::write_attribute(group.get(), "walls", info.walls);
-    contact_forces = ContactListWriter(std::move(group), H5T_IEEE_F32LE);
+    contact_forces = ContactListWriter(std::move(group), H5T_IEEE_F32LE, h5md::kForceColumns.size());
     connectivity = ConnectivityWriter(file.get(), "particles/trajectory");
   }
   const h5::Handle cell = h5::create_group(ours.get(), "cell");

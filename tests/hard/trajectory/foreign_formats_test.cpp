@@ -260,6 +260,22 @@ TEST_F(ForeignFormats, RadiiThatChangeAreNamed) {
             "the radii of beads change by more than a tenth from frame to frame: each has its mean.");
 }
 
+TEST_F(ForeignFormats, UnequalMassesThatAreNotReadAreNamed) {
+  const auto said = [&](double other, std::optional<double> unit) {
+    put_file(file(), fmt::format("2\nTime=0 Properties=pos:R:3:mass:R:1\n1 1 0 2\n3 1 0 {}\n", other));
+    ForeignOptions options;
+    options.bead_mass = unit;
+    const ForeignTrajectory source(file(), foreign_format("xyz", ""), options);
+    EXPECT_EQ(source.info().mass.size(), unit ? 2U : 0U);
+    return source.assumption();
+  };
+  EXPECT_EQ(said(2, std::nullopt), "") << "equal beads have the mass m";
+  EXPECT_EQ(said(0.5, 1), "");
+  EXPECT_EQ(said(0.5, std::nullopt),
+            "the masses of the file, 0.5 to 2, are not read, because their unit is not known (--bead-mass; 1 "
+            "for a file that twincell exported).");
+}
+
 TEST_F(ForeignFormats, DamagedXyz) {
   const std::string head = "Lattice=\"8 0 0 0 9 0 0 0 1\" Properties=pos:R:3";
   EXPECT_EQ(refusal("xyz", "many\n"), "f:1: 'many' is not a whole number.");

@@ -280,6 +280,28 @@ TEST(H5mdFile, ContactForcesAreStoredWithTheirConnectivity) {
   EXPECT_THROW(writer.append(frame), RunError);
 }
 
+TEST(H5mdFile, WithoutAContactTheListsOfContactForcesAreEmpty) {
+  const TemporaryFolder folder;
+  TrajectoryInfo info = experiment_info();
+  info.columns.contact_forces = true;
+  H5mdWriter writer(folder / "run.h5", info);
+  writer.append(frame_number(0));
+  writer.append(frame_number(2));
+  writer.finish();
+  const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  const h5::Series pairs(file.get(), "twincell/contact_forces/pairs"),
+      values(file.get(), "twincell/contact_forces/values");
+  ASSERT_TRUE(pairs && values);
+  EXPECT_EQ(pairs.size(), 0U);
+  EXPECT_EQ(pairs.record(), std::vector<hsize_t>{2});
+  EXPECT_EQ(values.size(), 0U);
+  EXPECT_EQ(values.record(), std::vector<hsize_t>{8});
+  EXPECT_TRUE(validate_h5md(folder / "run.h5").empty());
+  Frame frame;
+  H5mdReader(folder / "run.h5").read(1, frame);
+  EXPECT_TRUE(frame.contact_forces.empty());
+}
+
 TEST(H5mdFile, NothingAppearsUnderTheFinalNameBeforeTheEnd) {
   const TemporaryFolder folder;
   {
