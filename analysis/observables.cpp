@@ -148,7 +148,7 @@ Result absent_result(const std::string& name, const std::string& reason, const s
   return r;
 }
 
-Result mean_of(const BlockAverage& series, Result r, const std::string& why_absent) {
+Result mean_of(const SeriesAverage& series, Result r, const std::string& why_absent) {
   if (series.n() == 0) return absent_result(r.name, why_absent, r.source);
   r.values = {series.mean()};
   r.n = series.n();

@@ -14,7 +14,7 @@ namespace twincell::sweep {
 
 /// Follows the scene's `until.quantity` frame by frame. The run ends once half of the 95 % interval of its
 /// mean is at most the larger of until.relative_error times the mean and until.absolute_error. The interval
-/// is that of `analyze`: means of whole cycles as a correlated series (BlockAverage); the run must hold
+/// is that of `analyze`: means of whole cycles as a correlated series (SeriesAverage); the run must hold
 /// eight correlation times.
 ///
 /// The first check is after 100 cycles and after forty flights of a bead thrown at V_p into an open cell (2
@@ -41,7 +41,7 @@ class PrecisionRule {
   std::vector<double> mass_;
   int phases_, dimension_;
   double v_p_;
-  analysis::BlockAverage cycles_;
+  analysis::SeriesAverage cycles_;
   double sum_ = 0;
   std::int64_t next_look_;
   bool reached_ = false;

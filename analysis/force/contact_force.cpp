@@ -95,7 +95,7 @@ class ContactForces : public Observable {
   }
 
   bool stored_;
-  BlockAverage normal_, contact_number_;
+  SeriesAverage normal_, contact_number_;
   RatioAverage friction_;
   RatioDensity density_;
 };

@@ -66,7 +66,7 @@ class Stress : public Observable {
     const std::string volume =
         "positive in compression; volume of the bed between the 0.5 and 99.5 "
         "percentiles of the centres and half a diameter beyond";
-    const auto scalar = [&](const char* name, const BlockAverage& series, const char* what) {
+    const auto scalar = [&](const char* name, const SeriesAverage& series, const char* what) {
       return mean_of(
           series,
           {.name = name,
@@ -175,7 +175,7 @@ class Stress : public Observable {
   const TrajectoryInfo& info_;
   std::size_t frames_ = 0;
   Tensor contact_ = Tensor::Zero(), kinetic_ = Tensor::Zero();
-  BlockAverage pressure_, kinetic_pressure_;
+  SeriesAverage pressure_, kinetic_pressure_;
   std::map<std::int64_t, Slab> slabs_;
   std::vector<double> wall_sums_;
 };

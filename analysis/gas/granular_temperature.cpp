@@ -48,7 +48,7 @@ class CycleAverage {
     return sum_ / count_;
   }
   [[nodiscard]] bool by_cycles() const { return cycles_.n() > 0; }
-  [[nodiscard]] const BlockAverage& average() const { return by_cycles() ? cycles_ : frames_; }
+  [[nodiscard]] const SeriesAverage& average() const { return by_cycles() ? cycles_ : frames_; }
   [[nodiscard]] std::string of_what() const { return by_cycles() ? "cycles" : "frames"; }
 
  private:
@@ -56,7 +56,7 @@ class CycleAverage {
   std::int64_t cycle_ = -1;
   double sum_ = 0;
   int count_ = 0;
-  BlockAverage cycles_, frames_;
+  SeriesAverage cycles_, frames_;
 };
 
 /// Averages of m <v'^2> over cycles, for each component and for their sum.
@@ -187,7 +187,7 @@ class GranularTemperature : public Observable {
   [[nodiscard]] Result scaled(const std::string& name, const CycleAverage& cycles, double factor,
                               const std::string& what, const std::string& source,
                               const std::string& unit = "m g sigma") const {
-    const BlockAverage& average = cycles.average();
+    const SeriesAverage& average = cycles.average();
     Result r{.name = name,
              .values = {factor * average.mean()},
              .unit = unit,
@@ -223,7 +223,7 @@ class GranularTemperature : public Observable {
 
   [[nodiscard]] Result correlation_result() const {
     const CycleAverage& z = best().z;
-    const BlockAverage& average = z.average();
+    const SeriesAverage& average = z.average();
     const double tau = average.correlation_time();
     if (!std::isfinite(tau))
       return absent_result("T_z_tau",

@@ -21,7 +21,7 @@ class VelocityDistribution : public Observable {
   [[nodiscard]] std::vector<Result> results() const override { return {mean("a2_x", x_), mean("a2_z", z_)}; }
 
  private:
-  static void add_component(const Frame& frame, int axis, BlockAverage& average) {
+  static void add_component(const Frame& frame, int axis, SeriesAverage& average) {
     constexpr double kFewest = 4;
     double n = 0, sum = 0, second = 0, fourth = 0;
     const auto each = [&](auto&& visit) {
@@ -41,7 +41,7 @@ class VelocityDistribution : public Observable {
     average.add(fourth / (second * second) * (n + 1) / (3 * (n - 1)) - 1);
   }
 
-  [[nodiscard]] Result mean(const char* name, const BlockAverage& series) const {
+  [[nodiscard]] Result mean(const char* name, const SeriesAverage& series) const {
     return mean_of(
         series,
         {.name = name,
@@ -53,7 +53,7 @@ class VelocityDistribution : public Observable {
   }
 
   const TrajectoryInfo& info_;
-  BlockAverage x_, z_;
+  SeriesAverage x_, z_;
 };
 
 }  // namespace

@@ -45,7 +45,7 @@ class VolumeFraction : public Observable {
             "in some frame the beads need more volume than there is between the plate's mean height "
             "and the top of the bed: the bed moves with the plate",
             kSource);
-      const BlockAverage& mean = fraction.mean;
+      const SeriesAverage& mean = fraction.mean;
       Result r =
           mean_of(mean,
                   {.name = name,
@@ -63,7 +63,7 @@ class VolumeFraction : public Observable {
 
  private:
   struct Fraction {
-    BlockAverage mean;
+    SeriesAverage mean;
     bool sunk = false;  ///< in some frame the beads need more volume than there is
   };
   static void add_to(Fraction& fraction, double per_height, double height) {

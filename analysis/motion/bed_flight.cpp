@@ -255,7 +255,7 @@ class BedFlight : public Observable {
   double landed_ = -HUGE_VAL;          ///< end of the previous flight
   std::array<double, 2> carried_{};    ///< support at the last two instants on the plate
   bool thrown_ = false;                ///< the current flight began with a throw
-  BlockAverage durations_, share_;
+  SeriesAverage durations_, share_;
 };
 
 }  // namespace

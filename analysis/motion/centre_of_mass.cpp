@@ -59,7 +59,7 @@ class CentreOfMass : public Observable {
     const Result h = mean_of(
         mean_, {.name = "h_cm", .unit = "sigma", .n_of = of, .convention = rule, .source = kSource}, none);
     std::vector<double> phases;
-    for (const BlockAverage& phase : by_phase_) phases.push_back(phase.mean());
+    for (const SeriesAverage& phase : by_phase_) phases.push_back(phase.mean());
     const std::string no_phase = phases_ > 0 ? none : "the frames have no phase";
     return {h,
             array_of(phases,
@@ -126,12 +126,12 @@ class CentreOfMass : public Observable {
   const TrajectoryInfo& info_;
   const AnalysisContext& context_;
   std::size_t phases_;
-  std::vector<BlockAverage> by_phase_;
+  std::vector<SeriesAverage> by_phase_;
   std::vector<double> by_cycle_;
   std::int64_t cycle_ = -1;
   double sum_ = 0;
   std::size_t count_ = 0;
-  BlockAverage mean_;
+  SeriesAverage mean_;
 };
 
 }  // namespace

@@ -323,7 +323,7 @@ class PhaseThresholds : public Observable {
     std::vector<std::size_t> everyone(n_tracers_);
     std::iota(everyone.begin(), everyone.end(), std::size_t{0});
     std::vector<double> spread;
-    BlockAverage squares;
+    SeriesAverage squares;
     for (std::size_t j = 0; j < line_.n(); ++j) {
       const double squared = spread_squared(line_, j, everyone);
       spread.push_back(std::sqrt(squared));
@@ -386,7 +386,7 @@ class PhaseThresholds : public Observable {
   /// Interval of s_c as a correlated series over cycles if s_j is stationary. The motion of a line that
   /// drifts or comes to rest is a single event, not a stationary series; the interval is then from the
   /// scatter between tracers.
-  [[nodiscard]] std::optional<Interval> interval_of_s_c(const BlockAverage& squares) const {
+  [[nodiscard]] std::optional<Interval> interval_of_s_c(const SeriesAverage& squares) const {
     auto interval = squares.interval("cycles");
     if (!interval) {
       if (squares.n() < 2) return interval;

@@ -284,7 +284,7 @@ class Slip : public Observable {
   std::size_t slips_ = 0;
   std::size_t trials_ = 0;
   std::vector<char> slips_now_;
-  BlockAverage fraction_;
+  SeriesAverage fraction_;
   std::vector<double> p_s_j_;
   std::array<double, kDirections> directions_ = {};
   std::vector<Moved> moved_;

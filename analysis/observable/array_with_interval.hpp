@@ -15,7 +15,7 @@ namespace twincell::analysis {
 /// their 95 % intervals. An element of these is NaN where the series has no interval. All three are absent
 /// with the reason `why_absent` if no series has a value; the last two are absent if no series has an
 /// interval. `samples` is the kind of the values of the series, `r.n_of` that of the elements.
-/// \tparam Average BlockAverage or RatioAverage
+/// \tparam Average SeriesAverage or RatioAverage
 template <class Average>
 std::vector<Result> array_with_interval(const std::vector<Average>& series, const Result& r,
                                         const std::string& samples, const std::string& why_absent) {

@@ -51,7 +51,7 @@ Result absent_result(const std::string& name, const std::string& reason, const s
 
 /// `r` with the mean of `series`, its interval and its count; absent with the reason `why_absent` if the
 /// series is empty.
-Result mean_of(const BlockAverage& series, Result r, const std::string& why_absent);
+Result mean_of(const SeriesAverage& series, Result r, const std::string& why_absent);
 /// `r` with `values` as a one-dimensional array and the count of finite values; absent with the reason
 /// `why_absent` if no value is finite.
 Result array_of(const std::vector<double>& values, Result r, const std::string& why_absent);

@@ -29,7 +29,7 @@ class RatioDensity {
 
  private:
   double width_;
-  std::vector<BlockAverage> density_;
+  std::vector<SeriesAverage> density_;
 };
 
 }  // namespace twincell::analysis

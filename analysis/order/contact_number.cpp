@@ -41,7 +41,7 @@ class ContactNumber : public Observable {
   }
 
   [[nodiscard]] std::vector<Result> results() const override {
-    const auto mean = [](const char* name, const BlockAverage& series, const std::string& which,
+    const auto mean = [](const char* name, const SeriesAverage& series, const std::string& which,
                          const std::string& none) {
       return mean_of(
           series,
@@ -61,7 +61,7 @@ class ContactNumber : public Observable {
  private:
   const TrajectoryInfo& info_;
   double largest_ = 0;  ///< radius, sigma
-  BlockAverage all_, inside_;
+  SeriesAverage all_, inside_;
 };
 
 }  // namespace

@@ -105,7 +105,7 @@ class DefectsObservable : public Observable {
     const Defects d = find_defects(view.cells());
     double fraction = std::numeric_limits<double>::quiet_NaN();
     if (d.bulk > 0) {  // without an enclosed bead, zero defects is not a measurement
-      const auto count = [](BlockAverage& series, std::size_t number) {
+      const auto count = [](SeriesAverage& series, std::size_t number) {
         series.add(static_cast<double>(number));
       };
       count(five_, d.five);
@@ -130,7 +130,7 @@ class DefectsObservable : public Observable {
         "neighbours: Voronoi cells within {:.4g} sigma that share an edge; beads at walls, free surfaces and "
         "holes left out",
         radius_);
-    const auto mean = [&](const char* name, const BlockAverage& series, const std::string& of) {
+    const auto mean = [&](const char* name, const SeriesAverage& series, const std::string& of) {
       return mean_of(series,
                      {.name = name,
                       .unit = "1",
@@ -166,7 +166,7 @@ class DefectsObservable : public Observable {
   bool has_cycles_;
   double radius_;
   std::vector<double> evolution_, last_;
-  BlockAverage five_, seven_, other_, dislocations_, free_, holes_, fraction_;
+  SeriesAverage five_, seven_, other_, dislocations_, free_, holes_, fraction_;
 };
 
 }  // namespace

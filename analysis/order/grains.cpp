@@ -103,7 +103,7 @@ class GrainsObservable : public Observable {
         "degrees, and the beads between grains, which join the grain with which they share the "
         "greatest edge length; {}",
         kGrainBeads, kGrainOrder, kGrainTurn, rule_);
-    const auto mean = [&](const char* name, const BlockAverage& series, const char* unit,
+    const auto mean = [&](const char* name, const SeriesAverage& series, const char* unit,
                           const std::string& of, const std::string& absent) {
       return mean_of(series,
                      {.name = name,
@@ -133,7 +133,7 @@ class GrainsObservable : public Observable {
   std::string rule_;
   int dimension_;
   std::vector<double> last_;
-  BlockAverage number_, largest_, boundary_, turn_;
+  SeriesAverage number_, largest_, boundary_, turn_;
 };
 
 }  // namespace

@@ -55,7 +55,7 @@ class BondOrderObservable : public Observable {
   }
 
  private:
-  static void add_mean(BlockAverage& average, const std::vector<double>& values) {
+  static void add_mean(SeriesAverage& average, const std::vector<double>& values) {
     double sum = 0;
     std::size_t n = 0;
     for (const double value : values)
@@ -70,7 +70,7 @@ class BondOrderObservable : public Observable {
     return dimension_ != 2 ? "the cell is not planar" : "no bead has two neighbours";
   }
 
-  [[nodiscard]] Result mean(const std::string& name, const BlockAverage& series,
+  [[nodiscard]] Result mean(const std::string& name, const SeriesAverage& series,
                             const std::string& convention) const {
     return mean_of(series,
                    {.name = name, .unit = "1", .n_of = "frames", .convention = convention, .source = kSource},
@@ -90,7 +90,7 @@ class BondOrderObservable : public Observable {
   std::string rule_;
   int dimension_;
   BondOrder last_;
-  BlockAverage q6_, psi6_, psi4_, hexagonal_, square_;
+  SeriesAverage q6_, psi6_, psi4_, hexagonal_, square_;
 };
 
 }  // namespace

@@ -63,7 +63,7 @@ class Orientation : public Observable {
   [[nodiscard]] std::vector<Result> results() const override {
     const std::string planar = "the cell is not planar";
     const std::string none = dimension_ != 2 ? planar : fmt::format("no bead has psi6 > {}", kOrdered);
-    const auto mean = [&](const char* name, const BlockAverage& series, const char* unit,
+    const auto mean = [&](const char* name, const SeriesAverage& series, const char* unit,
                           const std::string& convention, const std::string& why) {
       return mean_of(series,
                      {.name = name,
@@ -113,7 +113,7 @@ class Orientation : public Observable {
   int dimension_;
   double first_ = 0;
   std::vector<double> last_;
-  BlockAverage ordered_, angle_, a_, b_;
+  SeriesAverage ordered_, angle_, a_, b_;
 };
 
 }  // namespace

@@ -111,7 +111,7 @@ class PairCorrelation : public Observable {
   static constexpr double kRounding = 1e-9;
   const TrajectoryInfo& info_;
   double farthest_ = kPairCorrelationRange;  ///< half of the shortest period, sigma
-  std::vector<BlockAverage> g_;
+  std::vector<SeriesAverage> g_;
 };
 
 }  // namespace

@@ -183,7 +183,7 @@ class StructureFactor : public Observable {
 
  private:
   const TrajectoryInfo& info_;
-  std::vector<BlockAverage> s_;
+  std::vector<SeriesAverage> s_;
   std::vector<double> wavenumber_, weight_;  ///< sums of S |q| and of S in each bin
 };
 

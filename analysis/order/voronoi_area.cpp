@@ -72,7 +72,7 @@ class VoronoiArea : public Observable {
 
  private:
   bool planar_;
-  BlockAverage mean_, variance_;
+  SeriesAverage mean_, variance_;
   RatioDensity density_;
 };
 

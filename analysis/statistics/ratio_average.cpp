@@ -32,8 +32,8 @@ double RatioAverage::mean() const {
   return n_ > 0 && b_ != 0 ? a_ / b_ : std::numeric_limits<double>::quiet_NaN();
 }
 
-BlockAverage RatioAverage::linearised() const {
-  BlockAverage series;
+SeriesAverage RatioAverage::linearised() const {
+  SeriesAverage series;
   const double ratio = mean();
   if (!std::isfinite(ratio)) return series;
   const double b = b_ / static_cast<double>(n_) * static_cast<double>(coarse_length_);

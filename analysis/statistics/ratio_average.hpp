@@ -17,21 +17,21 @@ namespace twincell::analysis {
 ///
 ///     R + (a - R b)/<b>
 ///
-/// (linearised ratio estimator). The interval is that of the BlockAverage of this series. At most 4096 means
-/// of equally many consecutive pairs are stored, as in BlockAverage.
+/// (linearised ratio estimator). The interval is that of the SeriesAverage of this series. At most 4096 means
+/// of equally many consecutive pairs are stored, as in SeriesAverage.
 class RatioAverage {
  public:
   void add(double a, double b);
   [[nodiscard]] std::size_t n() const { return n_; }
   /// R; NaN if there are no pairs or sum b = 0.
   [[nodiscard]] double mean() const;
-  /// 95 % interval of R, absent as BlockAverage::interval.
+  /// 95 % interval of R, absent as SeriesAverage::interval.
   [[nodiscard]] std::optional<Interval> interval(const std::string& of_what) const;
   /// Why `interval` is absent; empty if it is present.
   [[nodiscard]] std::string why_no_interval(const std::string& of_what) const;
 
  private:
-  [[nodiscard]] BlockAverage linearised() const;
+  [[nodiscard]] SeriesAverage linearised() const;
 
   std::vector<std::pair<double, double>> coarse_;  ///< sums over coarse_length_ consecutive pairs
   std::size_t coarse_length_ = 1;

@@ -76,7 +76,7 @@ double correlation_time(const std::vector<double>& series) {
   return fit_autoregression(series).correlation_time;
 }
 
-void BlockAverage::add(double value) {
+void SeriesAverage::add(double value) {
   ++n_;
   const double off = value - mean_, n = static_cast<double>(n_), step = off / n;
   mean_ += step;
@@ -94,15 +94,15 @@ void BlockAverage::add(double value) {
   coarse_length_ *= 2;
 }
 
-double BlockAverage::mean() const {
+double SeriesAverage::mean() const {
   return n_ > 0 ? mean_ : kNaN;
 }
 
-double BlockAverage::variance() const {
+double SeriesAverage::variance() const {
   return n_ > 1 ? squares_ / static_cast<double>(n_ - 1) : kNaN;
 }
 
-double BlockAverage::correlation_time() const {
+double SeriesAverage::correlation_time() const {
   const double coarse = twincell::analysis::correlation_time(coarse_);
   if (coarse_length_ == 1 || !(variance() > 0)) return coarse;
   // The variance of the mean is the same in the coarse and in the full series, which gives tau of the full
@@ -114,11 +114,11 @@ double BlockAverage::correlation_time() const {
   return std::max(0.5, coarse * static_cast<double>(coarse_length_) * of_blocks / variance());
 }
 
-bool BlockAverage::all_the_same() const {
+bool SeriesAverage::all_the_same() const {
   return n_ >= kLeastValues && !(variance() > kRounding * mean_ * mean_);
 }
 
-bool BlockAverage::repeats() const {
+bool SeriesAverage::repeats() const {
   if (n_ < kLeastValues) return false;
   const auto [least, largest] = std::minmax_element(coarse_.begin(), coarse_.end());
   // The variance enters the scale because the mean may be zero by cancellation.
@@ -126,15 +126,15 @@ bool BlockAverage::repeats() const {
   return fit_autoregression(coarse_).unexplained < kSame;
 }
 
-bool BlockAverage::has_no_scatter() const {
+bool SeriesAverage::has_no_scatter() const {
   return all_the_same() || repeats();
 }
 
-bool BlockAverage::is_long_enough(const Autoregression& fit) const {
+bool SeriesAverage::is_long_enough(const Autoregression& fit) const {
   return static_cast<double>(coarse_.size()) >= kLeastTimes * fit.correlation_time;
 }
 
-std::string BlockAverage::why_no_interval(const std::string& of_what) const {
+std::string SeriesAverage::why_no_interval(const std::string& of_what) const {
   if (n_ < kLeastValues)
     return fmt::format("too few {} for an error: {} of at least {}", of_what, n_, kLeastValues);
   if (all_the_same()) return fmt::format("the same in all {} {}", n_, of_what);
@@ -151,7 +151,7 @@ std::string BlockAverage::why_no_interval(const std::string& of_what) const {
 
 /// Standard error of the mean. The spectrum of the innovations at zero frequency is the mean over the lowest
 /// cosines of their squared transforms, each of which is one degree of freedom.
-double BlockAverage::standard_error(const Autoregression& fit, std::size_t cosines) const {
+double SeriesAverage::standard_error(const Autoregression& fit, std::size_t cosines) const {
   const std::vector<double>& e = fit.innovations;
   const auto m = static_cast<double>(e.size());
   double sum = 0;
@@ -175,14 +175,14 @@ double BlockAverage::standard_error(const Autoregression& fit, std::size_t cosin
 /// distribution with positive skewness, a mean that is too low comes with a scatter that is too small. The
 /// shift is the second term of the Edgeworth series of Student's t (Hall 1992), (2 z^2 + 1)/6 times the
 /// skewness of the mean.
-double BlockAverage::lift() const {
+double SeriesAverage::lift() const {
   if (n_ < 3) return 0;
   const auto n = static_cast<double>(n_);
   const double skewness = std::sqrt(n * (n - 1)) / (n - 2) * std::sqrt(n) * cubes_ / std::pow(squares_, 1.5);
   return (2 * kStandardErrors * kStandardErrors + 1) / 6 * skewness / std::sqrt(n / (2 * correlation_time()));
 }
 
-std::optional<Interval> BlockAverage::interval(const std::string& of_what) const {
+std::optional<Interval> SeriesAverage::interval(const std::string& of_what) const {
   if (n_ < kLeastValues || has_no_scatter()) return std::nullopt;
   const Autoregression fit = fit_autoregression(coarse_);
   if (!is_long_enough(fit)) return std::nullopt;

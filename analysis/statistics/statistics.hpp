@@ -58,7 +58,7 @@ double correlation_time(const std::vector<double>& series);
 /// towards the side of the skewness (Hall 1992), at most by a quarter of its width. Of autoregressive series
 /// of 10 correlation times, 94 % of the intervals contain the mean; docs/statistics.md states other
 /// processes.
-class BlockAverage {
+class SeriesAverage {
  public:
   void add(double value);
   [[nodiscard]] std::size_t n() const { return n_; }

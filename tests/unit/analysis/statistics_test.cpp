@@ -36,8 +36,8 @@ double coverage(int trials, double truth, const std::function<std::optional<Inte
   return 100.0 * covered / given;
 }
 
-std::optional<Interval> block_interval(const std::vector<double>& series) {
-  BlockAverage average;
+std::optional<Interval> series_interval(const std::vector<double>& series) {
+  SeriesAverage average;
   for (const double x : series) average.add(5 + x);
   return average.interval("values");
 }
@@ -69,7 +69,7 @@ TEST(Statistics, CorrelationTimeOfAutoregressiveSeries) {
 
 TEST(Statistics, ALongSeriesKeepsItsCorrelationTimeInConstantMemory) {
   std::mt19937_64 generator(3);
-  BlockAverage average;
+  SeriesAverage average;
   for (const double x : correlated(300000, 0.9, generator)) average.add(x);
   test::validate(
       {"V5.12", "correlation time of 300000 values kept as 4096 means", 9.5, 0.6, "(1 + a)/(2 (1 - a))"},
@@ -77,21 +77,21 @@ TEST(Statistics, ALongSeriesKeepsItsCorrelationTimeInConstantMemory) {
   test::validate({"V5.12", "variance of the same values", 1 / 0.19, 0.15, "1/(1 - a^2)"}, average.variance());
 }
 
-TEST(Statistics, BlockIntervalsCoverTheMean) {
+TEST(Statistics, IntervalsCoverTheMean) {
   std::mt19937_64 generator(5);
   const auto cover = [&](std::size_t n, double a) {
-    return coverage(2000, 5, [&] { return block_interval(correlated(n, a, generator)); });
+    return coverage(2000, 5, [&] { return series_interval(correlated(n, a, generator)); });
   };
-  test::validate({"V5.12", "coverage, %, of the 95 % block interval: 3000 values, correlation time 9.5", 95,
-                  2, "binomial"},
-                 cover(3000, 0.9));
+  test::validate(
+      {"V5.12", "coverage, %, of the 95 % interval: 3000 values, correlation time 9.5", 95, 2, "binomial"},
+      cover(3000, 0.9));
   test::validate({"V5.12", "coverage, %: 200 values, correlation time 1.5", 95, 2, "binomial"},
                  cover(200, 0.5));
   test::validate({"V5.12", "coverage, %: 30 independent values", 95, 2, "binomial"}, cover(30, 0));
   test::validate({"V5.12", "coverage, %: 200 independent values", 95, 2, "binomial"}, cover(200, 0));
 }
 
-TEST(Statistics, BlockIntervalsCoverTheMeanOfASeriesThatEchoes) {
+TEST(Statistics, IntervalsCoverTheMeanOfASeriesThatEchoes) {
   // Each value depends on the previous one and on the one 15 before. The correlation falls to 0.05 by lag
   // nine and is 0.2 again at lag fifteen, similar to the temperature of a vibrated gas from cycle to cycle.
   std::mt19937_64 generator(8);
@@ -107,7 +107,7 @@ TEST(Statistics, BlockIntervalsCoverTheMeanOfASeriesThatEchoes) {
     return std::vector<double>(x.begin() + kBefore, x.end());
   };
   const auto cover = [&](std::size_t n) {
-    return coverage(2000, 5, [&] { return block_interval(echoing(n)); });
+    return coverage(2000, 5, [&] { return series_interval(echoing(n)); });
   };
   test::validate({"V5.12", "coverage, %: 600 values, an echo at 15 whose correlation is 0.2", 93, 3,
                   "95 % less what the window of tau does not see"},
@@ -130,7 +130,7 @@ TEST(Statistics, IntervalsOfShortSeriesCoverTheMean) {
                     "coverage, %: " + std::to_string(c.n) + " values, correlation time " +
                         std::to_string(c.tau).substr(0, 4),
                     c.expected, 2, "an independent program of the same estimator"},
-                   coverage(2000, 5, [&] { return block_interval(correlated(c.n, a, generator)); }));
+                   coverage(2000, 5, [&] { return series_interval(correlated(c.n, a, generator)); }));
   }
 }
 
@@ -143,7 +143,7 @@ TEST(Statistics, ASlowMotionUnderFastNoise) {
       std::vector<double> x = correlated(n, (2 * tau - 1) / (2 * tau + 1), generator);
       const double scale = std::sqrt(2 * tau) / (tau + 0.5);  // sqrt(1 - a^2)
       for (double& value : x) value = value * scale + noise(generator);
-      return block_interval(x);
+      return series_interval(x);
     });
   };
   const char* outside = "an independent program of the same estimator";
@@ -169,7 +169,7 @@ TEST(Statistics, ASeriesThatOscillatesHasANarrowInterval) {
   double widths = 0;
   test::validate({"V5.12", "coverage, %: 300 values that ring with a period of 20", 95, 2, "binomial"},
                  coverage(2000, 5, [&] {
-                   const auto interval = block_interval(ringing(300));
+                   const auto interval = series_interval(ringing(300));
                    if (interval) widths += (interval->high - interval->low) / 2 / (1.96 * error) / 2000;
                    return interval;
                  }));
@@ -178,35 +178,35 @@ TEST(Statistics, ASeriesThatOscillatesHasANarrowInterval) {
 
 TEST(Statistics, ASeriesTooShortForItsCorrelationHasNoInterval) {
   std::mt19937_64 generator(6);
-  BlockAverage average;
+  SeriesAverage average;
   for (const double x : correlated(200, 0.98, generator)) average.add(x);  // correlation time 49.5
   EXPECT_FALSE(average.interval("cycles").has_value());
   EXPECT_NE(average.why_no_interval("cycles").find("correlation time"), std::string::npos);
   int walks = 0;
   for (int k = 0; k < 500; ++k) {
-    BlockAverage walk;
+    SeriesAverage walk;
     std::normal_distribution<double> step;
     double x = 0;
     for (int i = 0; i < 300; ++i) walk.add(x += step(generator));
     walks += walk.interval("cycles") ? 1 : 0;
   }
   EXPECT_LT(walks, 100) << "of 500 random walks, which have no mean";
-  BlockAverage ramp;
+  SeriesAverage ramp;
   for (int i = 0; i < 200; ++i) ramp.add(i);
   EXPECT_FALSE(ramp.interval("cycles").has_value());
 }
 
-TEST(Statistics, BlockMeanIsTheMean) {
-  BlockAverage average;
+TEST(Statistics, TheMeanOfALongSeriesIsTheMean) {
+  SeriesAverage average;
   EXPECT_TRUE(std::isnan(average.mean()));
   for (int i = 1; i <= 10001; ++i) average.add(i);
   EXPECT_NEAR(average.mean(), 5001, 1e-9);
   EXPECT_EQ(average.n(), 10001U);
-  BlockAverage three;
+  SeriesAverage three;
   for (int i = 0; i < 3; ++i) three.add(i);
   EXPECT_FALSE(three.interval("values").has_value());
   EXPECT_FALSE(three.why_no_interval("values").empty());
-  BlockAverage constant;
+  SeriesAverage constant;
   for (int i = 0; i < 9; ++i) constant.add(0.25);
   EXPECT_FALSE(constant.interval("values").has_value());
   EXPECT_TRUE(constant.has_no_scatter());
@@ -216,7 +216,7 @@ TEST(Statistics, BlockMeanIsTheMean) {
 TEST(Statistics, NoSeriesHasAnIntervalOfZeroWidth) {
   // A sum of 0.1 is not exact in its last digit; a bed that bounces with period two follows from its past.
   for (const std::size_t n : {4, 9, 16, 64, 5000, 20000}) {
-    BlockAverage constant, period_two, about_zero;
+    SeriesAverage constant, period_two, about_zero;
     for (std::size_t i = 0; i < n; ++i) {
       constant.add(0.1);
       period_two.add(i % 2 == 0 ? 0.3 : 0.1);
@@ -224,7 +224,7 @@ TEST(Statistics, NoSeriesHasAnIntervalOfZeroWidth) {
     }
     EXPECT_FALSE(constant.interval("cycles").has_value()) << n;
     EXPECT_NE(constant.why_no_interval("cycles").find("the same in all"), std::string::npos) << n;
-    for (const BlockAverage& series : {period_two, about_zero}) {
+    for (const SeriesAverage& series : {period_two, about_zero}) {
       const auto interval = series.interval("cycles");
       if (interval) {
         EXPECT_GT(interval->high - interval->low, 1e-9) << n;
@@ -232,7 +232,7 @@ TEST(Statistics, NoSeriesHasAnIntervalOfZeroWidth) {
       EXPECT_EQ(interval.has_value(), series.why_no_interval("cycles").empty()) << n;
     }
   }
-  BlockAverage sixteen;
+  SeriesAverage sixteen;
   for (int i = 0; i < 16; ++i) sixteen.add(i % 2 == 0 ? 1 : -1);
   EXPECT_FALSE(sixteen.interval("cycles").has_value());
   EXPECT_NE(sixteen.why_no_interval("cycles").find("period"), std::string::npos);
