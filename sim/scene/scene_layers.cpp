@@ -1,7 +1,11 @@
 #include "sim/scene/scene_layers.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 
 #include "sim/scene/drive_tables.hpp"
 #include "sim/scene/scene.hpp"
@@ -27,6 +31,23 @@ std::size_t count_drive_words(const Config& config) {
                                                 [&](const std::string& word) { return drive.has(word); }));
 }
 
+namespace {
+
+bool states_amplitude_or_frequency(const Config& config) {
+  const Section drive = config.root().section("drive");
+  return drive.has("amplitude") || drive.has("omega") || drive.has("frequency");
+}
+
+/// Whether Gamma and K_m, or Gamma and V_p, determine the drive. A new value of one then replaces that one,
+/// because without the other the drive would not be determined.
+bool is_stated_by_strengths(const Config& config) {
+  const Section drive = config.root().section("drive");
+  return !states_amplitude_or_frequency(config) && drive.has("gamma") &&
+         (drive.has("k_m") || drive.has("peak_velocity"));
+}
+
+}  // namespace
+
 void yield_to_record(Config& lower, const Config& upper) {
   if (!upper.root().section("drive").has("file")) return;
   for (const char* key :
@@ -45,6 +66,11 @@ void displace(Config& lower, const Config& upper) {
 }
 
 void assign(Config& config, const std::vector<std::string>& assignments) {
+  // Before the strengths give way to an assigned one, of which each is taken for the only one.
+  std::map<std::string, double> strengths;
+  if (is_stated_by_strengths(config))
+    for (const char* word : {"gamma", "k_m", "peak_velocity"})
+      if (const auto value = config.root().section("drive").number(word)) strengths[word] = *value;
   Config upper = Config::from_text("", "--set");
   for (const auto& assignment : assignments) {
     upper.assign(assignment);
@@ -56,6 +82,11 @@ void assign(Config& config, const std::vector<std::string>& assignments) {
   config.yield_to(upper, "drive.ramp", {"amplitude", "gamma", "k_m", "peak_velocity"});
   config.yield_to(upper, "drive.ramp", {"omega", "frequency"});
   displace_third_quantity(config, assignments);
+  const Section assigned = upper.root().section("drive");
+  const bool gamma = assigned.has("gamma"), k_m = assigned.has("k_m") || assigned.has("peak_velocity");
+  if (gamma != k_m && !states_amplitude_or_frequency(upper))
+    for (const auto& [word, value] : strengths)
+      if ((word == "gamma") == k_m) config.assign(fmt::format("drive.{}={:.17g}", word, value));
   for (const auto& assignment : assignments) config.assign(assignment);
 }
 

@@ -710,6 +710,22 @@ TEST(DriveOfAScene, AnAssignedStrengthReplacesTheAmplitude) {
   EXPECT_NEAR(drive(in_mm, {"drive.peak_acceleration_g=2.0"}).omega, 0.2 * std::numbers::pi, 1e-12);
   EXPECT_NEAR(drive(in_mm, {"drive.gamma=2.0"}).gamma(), 2, 1e-12);
   EXPECT_THROW((void)drive(twin, {"drive.gamma=2.0", "drive.amplitude=3.0", "drive.omega=2.0"}), ConfigError);
+  // Gamma and K_m determine a drive, A = K_m/Gamma and omega = Gamma/sqrt(K_m): each replaces itself.
+  for (const char* second : {"k_m = 4.0", "peak_velocity = 2.0"}) {
+    const auto by_strengths = [&](const std::vector<std::string>& assigned) {
+      return read_scene_text(std::string("[cell]\nwidth = 6.0\n[beads]\ncount = 9\n[contact]\nk_n = 1e5\n") +
+                                 "restitution = 0.6\n[drive]\ngamma = 2.0\n" + second + "\n",
+                             "s", assigned)
+          .drive;
+    };
+    EXPECT_DOUBLE_EQ(by_strengths({"drive.gamma=8.0"}).amplitude, 0.5);
+    EXPECT_DOUBLE_EQ(by_strengths({"drive.gamma=8.0"}).omega, 4);
+    EXPECT_DOUBLE_EQ(by_strengths({"drive.k_m=16.0"}).amplitude, 8);
+    EXPECT_DOUBLE_EQ(by_strengths({"drive.peak_velocity=4.0"}).amplitude, 8);
+    EXPECT_DOUBLE_EQ(by_strengths({"drive.gamma=8.0", "drive.k_m=16.0"}).amplitude, 2);
+    EXPECT_DOUBLE_EQ(by_strengths({"drive.gamma=8.0", "drive.omega=2.0"}).amplitude, 2);
+    EXPECT_DOUBLE_EQ(by_strengths({"drive.k_m=16.0", "drive.amplitude=2.0"}).omega, 2);
+  }
   // Of A and Gamma, an assigned omega does not tell which stays.
   EXPECT_THROW((void)drive("[drive]\namplitude = 2.0\ngamma = 2.0\n", {"drive.omega=3.0"}), ConfigError);
 }
