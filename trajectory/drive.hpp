@@ -66,6 +66,9 @@ struct Drive {
   std::optional<DriveRamp> ramp = {};                   ///< \pre its `from` is {amplitude, omega}
   std::optional<HorizontalMotion> horizontal = {};      ///< \pre axis is z
   double gravity = 1;  ///< g of the run in units of the g of its scale, > 0; 1 in a run without gravity
+  /// -g_z/|g|, the share of gravity that pulls the bed onto its plate, from -1 to 1: cos(theta) of a cell
+  /// tilted by theta. Gamma, K_m and the unit of time refer to |g|.
+  double downward_share = 1;
 
   /// Gamma = A omega^2 / g of the first harmonic or of the component at omega.
   [[nodiscard]] double gamma() const { return amplitude * omega * omega / gravity; }
@@ -105,7 +108,8 @@ struct Drive {
   }
   /// A plate at rest at its mean position, with the same axis and period.
   [[nodiscard]] Drive at_rest() const {
-    return {.axis = axis, .amplitude = 0, .omega = omega, .gravity = gravity};
+    return {
+        .axis = axis, .amplitude = 0, .omega = omega, .gravity = gravity, .downward_share = downward_share};
   }
   /// Upper bound of the length of the displacement in space, sigma: A (1 + sum a_n) of a vertical motion, A
   /// of a sine.

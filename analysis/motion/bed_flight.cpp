@@ -11,7 +11,6 @@
 
 #include "core/constants.hpp"
 #include "trajectory/plate.hpp"
-#include "trajectory/upright_gravity.hpp"
 
 namespace twincell::analysis {
 namespace {
@@ -86,7 +85,7 @@ class BedFlight : public Observable {
     else if (!info_.columns.phase || info_.phases_per_cycle < kFewestPhases)
       reason_ = fmt::format("the detection of flights needs at least {} frames per cycle", kFewestPhases);
     if (!reason_.empty()) return;
-    gravity_ = info_.drive->gravity * upright_share_of_gravity(info_);
+    gravity_ = info_.drive->gravity * info_.drive->downward_share;
     if (!(gravity_ > 0)) reason_ = "gravity does not pull the bed onto the plate";
   }
 

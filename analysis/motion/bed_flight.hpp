@@ -27,7 +27,7 @@ inline constexpr double kFlyingSupport = 0.25;
 /// consecutive frames in which it is detected, so that z_cm does not jump with it. The method is exact for a
 /// bed that does not rebound (the completely inelastic ball of Mehta & Luck 1990). Flights shorter than three
 /// frames and flights cut off by the ends of the film are not detected. g_z is the component of the run's
-/// gravity along -z: Drive::gravity times upright_share_of_gravity, g cos(theta) of a cell tilted by theta.
+/// gravity along -z: Drive::gravity times Drive::downward_share, g cos(theta) of a cell tilted by theta.
 ///
 /// Both results are absent without a drive along z, if the plate rests while the drive moves other walls, or
 /// with fewer than 8 frames per cycle. flight_time is also absent if the bed does not leave the plate.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
 #include "sim/run/contact_forces.hpp"
@@ -307,8 +306,6 @@ TrajectoryInfo Simulation::trajectory_info() const {
   info.scale = scene_.scale;
   info.conditions = conditions_of(scene_, system_.beads.size());
   info.source = "simulation";
-  // Until a file's provenance replaces it: observables find the scene here, as in a file.
-  info.provenance_json = nlohmann::json{{"config", scene_.resolved}}.dump();
   for (const Bead& b : system_.beads) {
     info.radius.push_back(b.radius);
     info.mass.push_back(b.mass);

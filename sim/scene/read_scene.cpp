@@ -53,7 +53,10 @@ Scene interpret(Config& config, const std::string& name, const std::filesystem::
   scene.drive.amplitude = solved.amplitude;
   scene.drive.omega = solved.omega;
   scene.drive.recorded = solved.recorded;
-  if (scene.g() > 0) scene.drive.gravity = scene.g();
+  if (scene.g() > 0) {
+    scene.drive.gravity = scene.g();
+    scene.drive.downward_share = -scene.gravity.z() / scene.g();
+  }
   if (ramp)
     scene.drive.ramp = make_ramp(*ramp, scene.drive, spec, g, cycles_before(scene.envelope, scene.discard),
                                  scene.cycles, drive);

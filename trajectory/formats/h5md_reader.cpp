@@ -317,6 +317,11 @@ void H5mdReader::Impl::read_parameters() {
             !(drive.gravity > 0 && std::isfinite(drive.gravity)))
           refuse("parameters/drive/gravity", "must be a positive number.");
       }
+      if (h5::exists(group.get(), "downward_share")) {
+        if (!h5::read_scalar(group.get(), "downward_share", drive.downward_share) ||
+            !(std::abs(drive.downward_share) <= 1))
+          refuse("parameters/drive/downward_share", "must be a number from -1 to 1.");
+      }
       read_drive_motion(group.get(), drive, {path.string(), 0, 0, "parameters/drive"});
       info.drive = drive;
     }

@@ -158,6 +158,8 @@ void H5mdWriter::Impl::create_parameters() {
     h5::write_scalar(drive.get(), "amplitude", info.drive->amplitude);
     h5::write_scalar(drive.get(), "omega", info.drive->omega);
     if (info.drive->gravity != 1) h5::write_scalar(drive.get(), "gravity", info.drive->gravity);
+    if (info.drive->downward_share != 1)
+      h5::write_scalar(drive.get(), "downward_share", info.drive->downward_share);
     std::vector<double> harmonics;
     for (const Harmonic& h : info.drive->harmonics) harmonics.insert(harmonics.end(), {h.amplitude, h.phase});
     if (!harmonics.empty())

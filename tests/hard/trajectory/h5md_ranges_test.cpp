@@ -75,6 +75,7 @@ TEST(H5mdRanges, WhatNoCellCanBeIsRefusedByEveryVerb) {
       {"mass", [](TrajectoryInfo& t) { t.mass[0] = 0; }},
       {"amplitude", [](TrajectoryInfo& t) { t.drive->amplitude = std::nan(""); }},
       {"omega", [](TrajectoryInfo& t) { t.drive->omega = -1; }},
+      {"downward_share", [](TrajectoryInfo& t) { t.drive->downward_share = 1.5; }},
       {"harmonics",
        [](TrajectoryInfo& t) {
          t.drive->harmonics = {{std::nan(""), 0}};

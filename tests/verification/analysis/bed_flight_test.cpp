@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
+#include <string>
+#include <utility>
 
+#include "sim/scene/read_scene.hpp"
 #include "tests/support/rigid_bed.hpp"
 #include "tests/support/validation.hpp"
 
@@ -76,25 +78,27 @@ TEST(BedFlight, FollowsTheGravityOfTheRun) {
 // the same.
 TEST(BedFlight, FollowsTheComponentOfGravityThatPointsAtThePlate) {
   const auto film = test::rigid_bed({.gamma = 1.7, .columns = 8, .rows = 3, .phases = 20, .cycles = 8});
-  const struct {
-    std::string cell;
-    double g;  // |g| of a cell whose g_z is -1
-  } cells[] = {{"tilt = 20.0", 1 / std::cos(20 * kTurn / 360)},
-               {"tilt = -42", 1 / std::cos(42 * kTurn / 360)},
-               {"gravity = [0.75, -1.0]", 1.25},
-               {"dimension = 3\ngravity = [0.0, -0.75, -1]", 1.25},
-               {"gravity = 1.0", 1}};
-  for (const auto& [cell, g] : cells) {
+  // |g| of a cell whose g_z is -1, and what its scene states.
+  const std::pair<double, std::string> cells[] = {
+      {1 / std::cos(20 * kTurn / 360), "tilt = 20.0\ngravity = 1.06417777247591"},
+      {1 / std::cos(42 * kTurn / 360), "tilt = -42\ngravity = 1.345632729606"},
+      {1.25, "gravity = [0.75, -1.0]"},
+      {1.25, "dimension = 3\nwidth_y = 4.0\ngravity = [0.0, -0.75, -1]"},
+      {1, "gravity = 1.0"}};
+  for (const auto& [g, cell] : cells) {
+    const sim::Scene scene = sim::read_scene_text(
+        "[beads]\ncount = 4\n[drive]\ngamma = 1.7\n[cell]\nwidth = 8.0\n" + cell + "\n", "scene");
+    EXPECT_NEAR(scene.drive.gravity * scene.drive.downward_share, 1, 1e-9) << cell;
     MemoryTrajectory tilted = film;
     tilted.info().drive->gravity = g;
-    tilted.info().provenance_json = nlohmann::json{{"config", "[cell]\n" + cell + "\n"}}.dump();
+    tilted.info().drive->downward_share = scene.drive.downward_share;
     test::validate({"V5.17", "flight of the rigid bed at Gamma = 1.7, |g| = " + text(g) + " g_z, t0",
                     flight_of_rigid_bed(1.7), 1e-6 * flight_of_rigid_bed(1.7), "closed form"},
                    measured(tilted));
     EXPECT_NEAR(measured(tilted, "flight_share"), measured(film, "flight_share"), 1e-9) << cell;
   }
   MemoryTrajectory hanging = film;
-  hanging.info().provenance_json = R"({"config": "[cell]\ngravity = [0.0, 1.0]\n"})";
+  hanging.info().drive->downward_share = -1;
   EXPECT_NE(find_result(analyze(hanging, {.only = {"flight_time"}}), "flight_time")
                 .absent.find("does not pull the bed onto the plate"),
             std::string::npos);
