@@ -113,7 +113,7 @@ struct Frame {
   double time = 0;                   ///< t0
   std::int32_t phase = -1;           ///< k in 0 .. N_k-1: at k/N_k of a cycle; -1 unknown
   std::int64_t cycle = -1;           ///< j, from 0; -1 unknown
-  double plate_height = kNoHeight;   ///< z_b, sigma; NaN unknown
+  double plate_height = kNoHeight;   ///< along Drive::axis, sigma (plate.hpp); NaN unknown
   TimeMean time_mean;                ///< over the time since the previous frame
   std::vector<Vec3> position;        ///< [n_beads], sigma; NaN where empty; not wrapped across periods
   std::vector<Vec3> position_sigma;  ///< [n_beads] or empty, standard uncertainty of each coordinate, sigma;

@@ -87,7 +87,8 @@ class Simulation {
   /// Warnings for the user: those of the plan, a bed that did not come to rest and, before the drive, an
   /// abrupt start.
   [[nodiscard]] std::vector<std::string> warnings() const;
-  /// Metadata of the trajectory, apart from provenance. Tracers are chosen when the bed has settled.
+  /// Metadata of the trajectory; of its provenance only `config`, the scene. Tracers are chosen when the bed
+  /// has settled.
   [[nodiscard]] TrajectoryInfo trajectory_info() const;
 
   /// Completes the settling, if it is not complete.

@@ -69,6 +69,38 @@ TEST_F(DoubtfulRuns, BeadsThatAreNotOfDiameterSigmaNeedAnotherCutoff) {
   EXPECT_EQ(usual.err.find("cutoff"), std::string::npos) << usual.err;
 }
 
+// A crystal that rides with its cell: along x its floor does not rise, and a floor at rest does not either.
+TEST_F(DoubtfulRuns, AFloorThatDoesNotRiseThrowsNoBed) {
+  const std::vector<std::string> gentle = {"drive.gamma=0.05", "drive.omega=0.5", "time.cycles=10"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), gentle.begin(), gentle.end());
+    return more;
+  };
+  ASSERT_EQ(simulate("x.h5", with({"drive.axis=\"x\""})).code, 0);
+  ASSERT_EQ(simulate("rest.h5", with({"cell.bottom_motion=\"rest\""})).code, 0);
+  ASSERT_EQ(simulate("z.h5", gentle).code, 0);
+  for (const char* file : {"x.h5", "rest.h5", "z.h5"}) {
+    const Ran ran = run_program({"analyze", folder_ / file, "--only", "s_b,phase", "--json"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const auto results = nlohmann::json::parse(ran.out).at("results");
+    // A/sqrt(2) = 0.14 if the displacement of the drive is taken for a height. Beads that start with the
+    // velocity 0.1 of the drive above a floor at rest hop by 0.005.
+    EXPECT_NEAR(results.at("s_b").at("value").get<double>(), 0, 0.01) << file;
+    EXPECT_NE(results.at("phase").dump().find("co-moving"), std::string::npos) << file;
+  }
+  refused({"analyze", folder_ / "x.h5", folder_ / "z.h5", "--only", "s_b"},
+          "the drive is along x there, z here");
+  refused({"render", folder_ / "x.h5", "-o", folder_ / "film"}, "the cell moves along x");
+  refused({"render", folder_ / "rest.h5", "-o", folder_ / "film"}, "the plate rests");
+  // The frames of a resting floor continue under the same drive.
+  std::ofstream(folder_ / "go_on.toml")
+      << "preset = \"fortini-huang-2015\"\n[cell]\nwidth_sigma = 6.0\nbottom_motion = "
+         "\"rest\"\n[drive]\ngamma "
+         "= 0.05\nomega = 0.5\n[start]\nkind = \"trajectory\"\nfrom = \"rest.h5\"\nframe = 5\nin_motion = "
+         "true\n[time]\nsteps_per_contact = 20\ndiscard = 0\ncycles = 1\nphases = 20\n";
+  EXPECT_EQ(run_program({"simulate", folder_ / "go_on.toml", "-o", folder_ / "on.h5"}).code, 0);
+}
+
 // Other seeds of one scene differ; one simulation does not tell by how much.
 TEST_F(DoubtfulRuns, ComparisonsSayWhatTheyDoNotKnow) {
   const std::vector<std::string> shaken = {"drive.gamma=1.6", "start.kind=\"random\"", "time.cycles=40"};

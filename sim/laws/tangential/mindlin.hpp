@@ -34,8 +34,9 @@ struct MindlinSlider {
   [[nodiscard]] double stiffness(double r_eff) const {
     return 2 * youngs_modulus * std::sqrt(r_eff) / ((2 - poisson_ratio) * (1 + poisson_ratio));
   }
-  /// This law sets no limit on the step: its stiffness stays below that of the normal force, so the
-  /// tangential period is longer than the duration of the impact that Hertz's law resolves.
+  /// This law alone knows no overlap and sets no limit on the step. With Hertz's law its stiffness stays
+  /// below that of the normal force; the plan limits the step where the normal law has a stiffness of its
+  /// own.
   [[nodiscard]] double shortest_time(const PairScale& /*p*/) const { return HUGE_VAL; }
   [[nodiscard]] std::array<double, kConstants> constants(const PairScale& p) const {
     return {-stiffness(p.r_eff), mu};
