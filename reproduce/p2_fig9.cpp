@@ -321,6 +321,7 @@ Reproduction run_9(const Request& request) {
       std::vector<Series> series;
       for (std::size_t k = 0; k < p.values.size(); ++k)
         add_series(series, legend_text(p, p.values[k]), gas.points(p.curves[k]), "T_bar_z");
+      if (std::ranges::all_of(series, [](const Series& s) { return s.x.empty(); })) continue;  // not run
       r.figures.push_back(series_figure(
           {.name = fmt::format("p2-fig9{}-{}d", p.name, of.system.dimension),
            .panel = p.name.front(),
@@ -367,7 +368,7 @@ Reproduction run_10(const Request& request) {
     std::vector<Series> series;
     for (const SystemPanels& of : study.all) {
       const Exponents x = exponents_of(gas, of.of(p.symbol));
-      series.push_back({.title = of.system.name(), .x = x.values, .y = x.alpha});
+      if (!x.values.empty()) series.push_back({.title = of.system.name(), .x = x.values, .y = x.alpha});
     }
     r.figures.push_back(series_figure(figure, series));
   }

@@ -246,11 +246,9 @@ std::string others_in_words(const BeadFrames& beads) {
     return {};
   const SizedBead& at = beads.others[first].front();
   return fmt::format(
-      "{:g} object{} of another size than the beads, as an intruder, {} in {} of {} frames, the first at x, "
-      "y "
-      "= {:.0f}, {:.0f} px; the numbers here leave such objects out (twincell locate --diameter D1 D2 "
-      "locates "
-      "discs of two sizes)",
+      "{:g} object{} of another size than the beads, as an intruder, {} in {} of {} frames, the first at "
+      "x, y = {:.0f}, {:.0f} px; the numbers here leave such objects out (twincell locate --diameter D1 D2 "
+      "locates discs of two sizes)",
       upper_median(numbers), upper_median(numbers) == 1 ? "" : "s",
       upper_median(numbers) == 1 ? "is seen" : "are seen", with, beads.others.size(), at.x, at.y);
 }

@@ -1,4 +1,4 @@
-# 2D rough, e = 0.9, μ = 0.4
+# e = 0.9, μ = 0.4
 # gnuplot p2-fig10-N.gp draws p2-fig10-N.svg, p2-fig10-N.pdf and p2-fig10-N.png
 do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
@@ -47,9 +47,9 @@ set yrange [0.644:2.156]
 unset logscale y
 set ytics 0.2
 set format y '%g'
-set title '{/:Bold (c)} 2D rough, e = 0.9, μ = 0.4'
+set title '{/:Bold (c)} e = 0.9, μ = 0.4'
 set arrow from 6,1 to 8,1 nohead lw 1.5 dt 4 lc rgb '#555555'
-plot 'p2-fig10-N.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title 'α over [W_f, W_2]', \
+plot 'p2-fig10-N.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title '2D rough', \
      keyentry with lines lw 1.5 dt 4 lc rgb '#555555' title 'paper: about 1 for N ≥ 6'
 unset output
 reset

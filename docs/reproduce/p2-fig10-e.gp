@@ -1,4 +1,4 @@
-# 2D rough, μ = 0.4, N = 4
+# μ = 0.4, N = 4
 # gnuplot p2-fig10-e.gp draws p2-fig10-e.svg, p2-fig10-e.pdf and p2-fig10-e.png
 do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
@@ -47,8 +47,8 @@ set yrange [0.644:2.156]
 unset logscale y
 set ytics 0.2
 set format y '%g'
-set title '{/:Bold (a)} 2D rough, μ = 0.4, N = 4'
-plot 'p2-fig10-e.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title 'α over [W_f, W_2]'
+set title '{/:Bold (a)} μ = 0.4, N = 4'
+plot 'p2-fig10-e.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title '2D rough'
 unset output
 reset
 }

@@ -1,4 +1,4 @@
-# 2D rough, e = 0.9, N = 4
+# e = 0.9, N = 4
 # gnuplot p2-fig10-mu.gp draws p2-fig10-mu.svg, p2-fig10-mu.pdf and p2-fig10-mu.png
 do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
@@ -47,8 +47,8 @@ set yrange [0.644:2.156]
 unset logscale y
 set ytics 0.2
 set format y '%g'
-set title '{/:Bold (b)} 2D rough, e = 0.9, N = 4'
-plot 'p2-fig10-mu.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title 'α over [W_f, W_2]'
+set title '{/:Bold (b)} e = 0.9, N = 4'
+plot 'p2-fig10-mu.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title '2D rough'
 unset output
 reset
 }

@@ -1,5 +1,5 @@
-# 2D rough, e = 0.9, μ = 0.4
-# gnuplot p2-fig9d.gp draws p2-fig9d.svg, p2-fig9d.pdf and p2-fig9d.png
+# 2D rough, e = 0.9, N = 4
+# gnuplot p2-fig9c-2d.gp draws p2-fig9c-2d.svg, p2-fig9c-2d.pdf and p2-fig9c-2d.png
 do for [kind in 'svg pdf png'] {
 if (kind eq 'svg') {
   set terminal svg size 640,480 dynamic enhanced font 'Arial,15' background 'white'
@@ -10,7 +10,7 @@ if (kind eq 'pdf') {
 if (kind eq 'png') {
   set terminal pngcairo size 1024,768 enhanced font 'sans,14' fontscale 1.25 linewidth 1.6 pointscale 1.6 background 'white'
 }
-set output 'p2-fig9d.' . kind
+set output 'p2-fig9c-2d.' . kind
 blue = '#0072B2'
 orange = '#E69F00'
 vermilion = '#D55E00'
@@ -43,15 +43,14 @@ set logscale x
 set xtics (2, '' 3 1, '' 4 1, 5, '' 6 1, '' 7 1, '' 8 1, '' 9 1, 10, 20, '' 30 1, '' 40 1, 50, '' 60 1, '' 70 1, '' 80 1, '' 90 1, 100)
 set format x '%g'
 set ylabel 'T_z/(m V_p^2)'
-set yrange [-0.047754402:1.24161445]
+set yrange [-0.0268016828:0.696843753]
 unset logscale y
-set ytics 0.2
+set ytics 0.1
 set format y '%g'
-set title '{/:Bold (d)} 2D rough, e = 0.9, μ = 0.4'
-plot 'p2-fig9d.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title 'N = 2', \
-     'p2-fig9d.dat' index 1 using 1:2:3:4 with yerrorbars lt 2 title 'N = 4', \
-     'p2-fig9d.dat' index 2 using 1:2:3:4 with yerrorbars lt 3 title 'N = 6', \
-     'p2-fig9d.dat' index 3 using 1:2:3:4 with yerrorbars lt 4 title 'N = 8'
+set title '{/:Bold (c)} 2D rough, e = 0.9, N = 4'
+plot 'p2-fig9c-2d.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title 'μ = 0.1', \
+     'p2-fig9c-2d.dat' index 1 using 1:2:3:4 with yerrorbars lt 2 title 'μ = 0.4', \
+     'p2-fig9c-2d.dat' index 2 using 1:2:3:4 with yerrorbars lt 3 title 'μ = 0.8'
 unset output
 reset
 }
