@@ -23,7 +23,7 @@ namespace twincell::calibration {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr std::size_t kSearched = 2000;  // samples of the periodogram
+constexpr std::size_t kSearched = 2000;       // samples of the periodogram
 constexpr double kSuspiciousHarmonic = 0.01;  // largest p of a second harmonic that is reported
 
 struct Sample {

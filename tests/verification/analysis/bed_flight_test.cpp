@@ -83,11 +83,12 @@ TEST(BedFlight, FollowsTheComponentOfGravityThatPointsAtThePlate) {
       {1 / std::cos(20 * kTurn / 360), "tilt = 20.0\ngravity = 1.06417777247591"},
       {1 / std::cos(42 * kTurn / 360), "tilt = -42\ngravity = 1.345632729606"},
       {1.25, "gravity = [0.75, -1.0]"},
-      {1.25, "dimension = 3\nwidth_y = 4.0\ngravity = [0.0, -0.75, -1]"},
+      {1.25, "dimension = 3\ndepth = 4.0\ngravity = [0.0, -0.75, -1]"},
       {1, "gravity = 1.0"}};
   for (const auto& [g, cell] : cells) {
     const sim::Scene scene = sim::read_scene_text(
-        "[beads]\ncount = 4\n[drive]\ngamma = 1.7\n[cell]\nwidth = 8.0\n" + cell + "\n", "scene");
+        "[beads]\ncount = 4\n[drive]\ngamma = 1.7\nomega = 1.0\n[cell]\nwidth = 8.0\n" + cell + "\n",
+        "scene");
     EXPECT_NEAR(scene.drive.gravity * scene.drive.downward_share, 1, 1e-9) << cell;
     MemoryTrajectory tilted = film;
     tilted.info().drive->gravity = g;
