@@ -21,6 +21,9 @@ T upper_median(std::vector<T> values) {
   return *middle;
 }
 
+/// Standard deviation of a normal distribution over its median deviation, 1/0.67449.
+inline constexpr double kSpreadOverDeviation = 1.4826;
+
 /// Robust spread: 1.4826 median |x - middle|, with the upper median. For a normal distribution about `middle`
 /// it estimates the standard deviation, of which the median deviation is 0.67449 = 1/1.4826. Outliers change
 /// it little if they are few.
@@ -30,7 +33,7 @@ T upper_median(std::vector<T> values) {
 inline double robust_spread(std::vector<double> values, double middle = 0) {
   if (values.empty()) return 0;
   for (double& x : values) x = std::abs(x - middle);
-  return 1.4826 * upper_median(std::move(values));
+  return kSpreadOverDeviation * upper_median(std::move(values));
 }
 
 /// Upper median of the first n of a few values. Each value is compared with all others, vectorised and

@@ -103,7 +103,10 @@ double SeriesAverage::variance() const {
 }
 
 double SeriesAverage::correlation_time() const {
-  const double coarse = twincell::analysis::correlation_time(coarse_);
+  return in_values(twincell::analysis::correlation_time(coarse_));
+}
+
+double SeriesAverage::in_values(double coarse) const {
   if (coarse_length_ == 1 || !(variance() > 0)) return coarse;
   // The variance of the mean is the same in the coarse and in the full series, which gives tau of the full
   // one.
@@ -118,16 +121,17 @@ bool SeriesAverage::all_the_same() const {
   return n_ >= kLeastValues && !(variance() > kRounding * mean_ * mean_);
 }
 
-bool SeriesAverage::repeats() const {
-  if (n_ < kLeastValues) return false;
+std::optional<Autoregression> SeriesAverage::process() const {
   const auto [least, largest] = std::minmax_element(coarse_.begin(), coarse_.end());
   // The variance enters the scale because the mean may be zero by cancellation.
-  if (*largest - *least <= kSame * std::sqrt(mean_ * mean_ + variance())) return true;
-  return fit_autoregression(coarse_).unexplained < kSame;
+  if (*largest - *least <= kSame * std::sqrt(mean_ * mean_ + variance())) return std::nullopt;
+  Autoregression fit = fit_autoregression(coarse_);
+  if (fit.unexplained < kSame) return std::nullopt;
+  return fit;
 }
 
 bool SeriesAverage::has_no_scatter() const {
-  return all_the_same() || repeats();
+  return n_ >= kLeastValues && (all_the_same() || !process());
 }
 
 bool SeriesAverage::is_long_enough(const Autoregression& fit) const {
@@ -138,15 +142,15 @@ std::string SeriesAverage::why_no_interval(const std::string& of_what) const {
   if (n_ < kLeastValues)
     return fmt::format("too few {} for an error: {} of at least {}", of_what, n_, kLeastValues);
   if (all_the_same()) return fmt::format("the same in all {} {}", n_, of_what);
-  if (repeats()) return fmt::format("{} {} repeat with a period: they do not scatter", n_, of_what);
-  const Autoregression fit = fit_autoregression(coarse_);
-  if (is_long_enough(fit)) return "";
-  return std::isinf(fit.correlation_time)
+  const auto fit = process();
+  if (!fit) return fmt::format("{} {} repeat with a period: they do not scatter", n_, of_what);
+  if (is_long_enough(*fit)) return "";
+  return std::isinf(fit->correlation_time)
              ? fmt::format("{} {} drift: their correlation does not end", n_, of_what)
              : fmt::format(
                    "{} {} with a correlation time of {:.3g} are too few for an error: {:g} times the "
                    "correlation time at least",
-                   n_, of_what, correlation_time(), kLeastTimes);
+                   n_, of_what, in_values(fit->correlation_time), kLeastTimes);
 }
 
 /// Standard error of the mean. The spectrum of the innovations at zero frequency is the mean over the lowest
@@ -175,27 +179,29 @@ double SeriesAverage::standard_error(const Autoregression& fit, std::size_t cosi
 /// distribution with positive skewness, a mean that is too low comes with a scatter that is too small. The
 /// shift is the second term of the Edgeworth series of Student's t (Hall 1992), (2 z^2 + 1)/6 times the
 /// skewness of the mean.
-double SeriesAverage::lift() const {
+double SeriesAverage::lift(double tau) const {
   if (n_ < 3) return 0;
   const auto n = static_cast<double>(n_);
   const double skewness = std::sqrt(n * (n - 1)) / (n - 2) * std::sqrt(n) * cubes_ / std::pow(squares_, 1.5);
-  return (2 * kStandardErrors * kStandardErrors + 1) / 6 * skewness / std::sqrt(n / (2 * correlation_time()));
+  return (2 * kStandardErrors * kStandardErrors + 1) / 6 * skewness / std::sqrt(n / (2 * tau));
 }
 
 std::optional<Interval> SeriesAverage::interval(const std::string& of_what) const {
-  if (n_ < kLeastValues || has_no_scatter()) return std::nullopt;
-  const Autoregression fit = fit_autoregression(coarse_);
-  if (!is_long_enough(fit)) return std::nullopt;
-  const bool is_long = static_cast<double>(coarse_.size()) >= kLongSeries * fit.correlation_time;
-  const std::size_t cosines = std::min(is_long ? kCosinesOfLongSeries : kCosines, fit.innovations.size() - 1);
+  if (n_ < kLeastValues || all_the_same()) return std::nullopt;
+  const auto fit = process();
+  if (!fit || !is_long_enough(*fit)) return std::nullopt;
+  const bool is_long = static_cast<double>(coarse_.size()) >= kLongSeries * fit->correlation_time;
+  const std::size_t cosines =
+      std::min(is_long ? kCosinesOfLongSeries : kCosines, fit->innovations.size() - 1);
   const double degrees = std::max(1.0, static_cast<double>(cosines) - kDegreesOfPrewhitening);
-  const double half = student_t_95(degrees) * standard_error(fit, cosines);
+  const double half = student_t_95(degrees) * standard_error(*fit, cosines);
+  const double tau = in_values(fit->correlation_time);
   // The limit keeps the mean well inside the interval.
-  const double lifted = mean() + half * std::clamp(lift() / kStandardErrors, -0.5, 0.5);
+  const double lifted = mean() + half * std::clamp(lift(tau) / kStandardErrors, -0.5, 0.5);
   return Interval{lifted - half, lifted + half, 0.95,
                   fmt::format("Student's t of {} cosines over {}, prewhitened at order {}, correlation time "
                               "{:.3g} {}",
-                              cosines, of_what, fit.coefficients.size(), correlation_time(), of_what)};
+                              cosines, of_what, fit->coefficients.size(), tau, of_what)};
 }
 
 std::optional<Interval> bootstrap_interval(

@@ -54,10 +54,9 @@ double correlation_time(const std::vector<double>& series);
 ///     c_j = sqrt(2/m) sum_i e_i cos(pi j (i + 1/2)/m)
 ///
 /// with B = 6 cosines, or 8 for a series of 100 correlation times and more. The interval is that of Student's
-/// t with B - 1 degrees of freedom (Lazarus, Lewis, Stock & Watson 2018), shifted
-/// towards the side of the skewness (Hall 1992), at most by a quarter of its width. Of autoregressive series
-/// of 10 correlation times, 94 % of the intervals contain the mean; docs/statistics.md states other
-/// processes.
+/// t with B - 1 degrees of freedom (Lazarus, Lewis, Stock & Watson 2018), shifted towards the side of the
+/// skewness (Hall 1992), at most by a quarter of its width. Of autoregressive series of 20 correlation times,
+/// 94 % of the intervals or more contain the mean; docs/statistics.md states other processes.
 class SeriesAverage {
  public:
   void add(double value);
@@ -80,10 +79,14 @@ class SeriesAverage {
  private:
   /// Whether all values (at least 4) are equal up to rounding.
   [[nodiscard]] bool all_the_same() const;
-  /// Whether each value (of at least 4) follows from those before it, or all stored means are equal.
-  [[nodiscard]] bool repeats() const;
+  /// The process of the stored means. Empty if these are all equal, or each follows from those before it.
+  /// \pre n() >= 4
+  [[nodiscard]] std::optional<Autoregression> process() const;
+  /// Correlation time in values, from that of the stored means.
+  [[nodiscard]] double in_values(double coarse) const;
   [[nodiscard]] bool is_long_enough(const Autoregression& fit) const;
-  [[nodiscard]] double lift() const;
+  /// \param tau correlation time, in values
+  [[nodiscard]] double lift(double tau) const;
   [[nodiscard]] double standard_error(const Autoregression& fit, std::size_t cosines) const;
 
   std::vector<double> coarse_;  ///< means of coarse_length_ consecutive values

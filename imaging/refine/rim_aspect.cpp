@@ -92,7 +92,8 @@ std::optional<Aspect> RimAspect::value() const {
                            })->across;
   const auto of = [&](const Part& p) { return p.e - (p.across - all_alike) / 48; };
   const double e = weighted_median(discs_, of),
-               scatter = 1.4826 * weighted_median(discs_, [&](const Part&p) { return std::abs(of(p) - e); });
+               scatter = kSpreadOverDeviation *
+                         weighted_median(discs_, [&](const Part&p) { return std::abs(of(p) - e); });
   const double ratio = (1 - e) / (1 + e);
   // Neighbours hide parts of the rims as circles, not as ellipses: of the demo, stretched by 1.08 and 0.93,
   // the deviation from 1 is measured 5 and 6 % too small.

@@ -472,11 +472,9 @@ LammpsDeck lammps_deck(const Scene& scene, const TrajectorySource& trajectory, s
            fmt::format("phase {}/{} of {} falls between two of the cycle's {} steps.", frame.phase,
                        info.phases_per_cycle, name, m.steps_per_period));
   m.first_step = steps / info.phases_per_cycle;
-  constexpr double kSamePlate = 1e-9;
   const double ours =
       m.drive.displacement(static_cast<double>(m.first_step) / static_cast<double>(m.steps_per_period));
-  if (!std::isnan(frame.plate_height) && std::abs(frame.plate_height - ours) > kSamePlate &&
-      (plate_follows_drive(scene) || frame.plate_height != 0))
+  if (!plate_agrees(scene, frame.plate_height, ours))
     refuse(scene, "drive",
            fmt::format("the plate of {} is at {:g}, but this drive puts it at {:g}.", name,
                        frame.plate_height, ours));

@@ -1,6 +1,8 @@
 #pragma once
 /// \file
-/// Whether the plate of a scene follows its drive.
+/// Whether the plate of a scene follows its drive, and whether the plate of a file is that of the scene.
+
+#include <cmath>
 
 #include "sim/scene/scene.hpp"
 
@@ -11,6 +13,14 @@ namespace twincell::sim {
 /// sideways, and Frame::plate_height is the displacement of its other walls even if the bottom rests.
 inline bool plate_follows_drive(const Scene& scene) {
   return scene.drive.axis != Axis::z || scene.bottom != Edge::wall || scene.bottom_moves;
+}
+
+/// Whether the stored Frame::plate_height `stored` is what a run of the scene stores at the displacement
+/// `displacement` of its drive, both in sigma: equal to 1e-9, or 0 if the plate rests. NaN, unknown, agrees.
+inline bool plate_agrees(const Scene& scene, double stored, double displacement) {
+  constexpr double kSamePlate = 1e-9;
+  return std::isnan(stored) || std::abs(stored - displacement) <= kSamePlate ||
+         (!plate_follows_drive(scene) && stored == 0);
 }
 
 }  // namespace twincell::sim

@@ -86,10 +86,8 @@ Start start_in_motion(const Scene& scene, const TrajectoryInfo& info, const Fram
   if (all_known(frame.rim_speed)) start.rim_speeds = frame.rim_speed;
   // The drive must put the plate where the frame has it.
   start.phase = scene.phase ? *scene.phase : static_cast<double>(frame.phase) / info.phases_per_cycle;
-  constexpr double kSamePlate = 1e-9;
   if (const double plate = scene.drive.displacement(*start.phase);
-      !std::isnan(frame.plate_height) && std::abs(plate - frame.plate_height) > kSamePlate &&
-      (plate_follows_drive(scene) || frame.plate_height != 0))
+      !plate_agrees(scene, frame.plate_height, plate))
     refuse(
         fmt::format(" has its plate at {:g} sigma, but this drive puts it at {:g}; to change the amplitude, "
                     "start at a frame of phase 0.",

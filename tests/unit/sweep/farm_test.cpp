@@ -44,46 +44,47 @@ Plan plan_of(const std::string& cycles) {
       "plan");
 }
 
+/// An empty store.
+class Farm : public ::testing::Test {
+ protected:
+  const TemporaryFolder folder_;
+  const Store store_{folder_ / "runs"};
+};
+
 // The first points are begun without knowing their time.
-TEST(Farm, PointsThatAreLateAreEndedAndStayOpen) {
-  const TemporaryFolder folder;
-  const Store store(folder / "runs");
+TEST_F(Farm, PointsThatAreLateAreEndedAndStayOpen) {
   const Plan plan = plan_of("2, 1000000, 2000000");  // of which two take hours
-  Schedule schedule(plan, store);
+  Schedule schedule(plan, store_);
   Limited watch(0.2);
-  EXPECT_FALSE(run_here({&schedule}, store, {.threads = 3}, watch));
+  EXPECT_FALSE(run_here({&schedule}, store_, {.threads = 3}, watch));
   EXPECT_GT(watch.elapsed(), 5.0);
   EXPECT_LT(watch.elapsed(), 15.0);
-  Schedule again(plan, store);
+  Schedule again(plan, store_);
   EXPECT_EQ(again.counts().done, 1U);
   EXPECT_EQ(again.counts().known, 3U);
   EXPECT_TRUE(again.take(1e300)) << "the right to compute the point was not given back";
 }
 
-TEST(Farm, PointsInTimeAreDone) {
-  const TemporaryFolder folder;
-  const Store store(folder / "runs");
+TEST_F(Farm, PointsInTimeAreDone) {
   const Plan plan = plan_of("2, 3, 4");
-  Schedule schedule(plan, store);
+  Schedule schedule(plan, store_);
   Limited watch(60);
-  EXPECT_TRUE(run_here({&schedule}, store, {.threads = 2}, watch));
+  EXPECT_TRUE(run_here({&schedule}, store_, {.threads = 2}, watch));
   EXPECT_EQ(schedule.counts().done, 3U);
 }
 
 // What a figure cost stands in its runs, so that a call that was killed, or that continued another one, does
 // not change it.
-TEST(Farm, CostIsTheProcessorTimeOfAllResults) {
-  const TemporaryFolder folder;
-  const Store store(folder / "runs");
+TEST_F(Farm, CostIsTheProcessorTimeOfAllResults) {
   const Plan one = plan_of("2"), three = plan_of("2, 3, 4");
-  Schedule first(one, store);
+  Schedule first(one, store_);
   Limited watch(60);
-  run_here({&first}, store, {.threads = 1}, watch);
+  run_here({&first}, store_, {.threads = 1}, watch);
   EXPECT_GT(watch.processor_seconds, 0);
   EXPECT_LT(watch.processor_seconds, 60);
-  Schedule all(three, store);
+  Schedule all(three, store_);
   Limited second(60);
-  run_here({&all}, store, {.threads = 2}, second);
+  run_here({&all}, store_, {.threads = 2}, second);
   double sum = 0;
   for (const Curve& curve : all.curves())
     for (const auto& result : curve.results)
@@ -92,19 +93,17 @@ TEST(Farm, CostIsTheProcessorTimeOfAllResults) {
   EXPECT_GT(sum, watch.processor_seconds) << "the result of the first call is missing";
 }
 
-TEST(Farm, CostIsUnknownWhereAResultDoesNotStateIt) {
-  const TemporaryFolder folder;
-  const Store store(folder / "runs");
+TEST_F(Farm, CostIsUnknownWhereAResultDoesNotStateIt) {
   const Plan plan = plan_of("2");
-  Schedule schedule(plan, store);
+  Schedule schedule(plan, store_);
   Limited watch(60);
-  run_here({&schedule}, store, {.threads = 1}, watch);
-  const auto file = store.folder() / "points" / schedule.curves().front().points.front().id / "result.json";
+  run_here({&schedule}, store_, {.threads = 1}, watch);
+  const auto file = store_.folder() / "points" / schedule.curves().front().points.front().id / "result.json";
   nlohmann::json result = nlohmann::json::parse(read_text_file(file));
   result["computed"].erase("processor_seconds");
   std::ofstream(file) << result.dump() << "\n";
-  Schedule again(plan, store);
-  EXPECT_TRUE(run_here({&again}, store, {.threads = 1}, watch));
+  Schedule again(plan, store_);
+  EXPECT_TRUE(run_here({&again}, store_, {.threads = 1}, watch));
   EXPECT_TRUE(std::isnan(watch.processor_seconds));
 }
 
