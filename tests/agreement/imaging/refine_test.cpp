@@ -123,7 +123,7 @@ void spread_contrast(rendered::Picture& p) {
   for (std::size_t k = 0; k < p.discs.size(); ++k) p.discs[k].contrast = 0.75 + 0.25 * double(k * 5 % 7) / 6;
 }
 
-TEST(Refine, AloneIsCeres) {
+TEST(Refine, OneDiscAloneIsThatOfCeres) {
   rendered::Picture p;
   p.width = p.height = 120;
   std::mt19937_64 random(8);

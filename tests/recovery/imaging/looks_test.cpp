@@ -238,7 +238,7 @@ TEST(CommonProfile, TheRadiusIsThatOfTheRimWhateverSizeIsSearchedFor) {
   }
 }
 
-TEST_P(Looks, ApartAreFoundUnasked) {
+TEST_P(Looks, SeparatedBeadsAreFoundWithoutOptions) {
   for (const double diameter : kDiameters) see("apart", diameter);
 }
 

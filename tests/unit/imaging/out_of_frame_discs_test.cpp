@@ -37,7 +37,7 @@ std::vector<Proposal> beyond(const rendered::Picture& p) {
   return out_of_frame_discs(args, kRadius, kRadius + 1);
 }
 
-TEST(BeyondFrame, DiscsAreSeenByTheirSlivers) {
+TEST(OutOfFrameDiscs, DiscsAreSeenByTheirSlivers) {
   // From half a disc to half a pixel of a disc visible, at each border.
   const std::vector<rendered::Disc> discs = {{30, -3, kRadius}, {70.4, -6.8, kRadius},  {-5.5, 30.3, kRadius},
                                              {-7, 60, kRadius}, {105.2, 20.2, kRadius}, {60, 86, kRadius}};
@@ -57,7 +57,7 @@ TEST(BeyondFrame, DiscsAreSeenByTheirSlivers) {
   }
 }
 
-TEST(BeyondFrame, AnEmptyBorderHasNone) {
+TEST(OutOfFrameDiscs, AnEmptyBorderHasNone) {
   EXPECT_TRUE(beyond(picture_of({{50, 40, kRadius}})).empty());
   // Its blurred rim ends outside the frame.
   EXPECT_TRUE(beyond(picture_of({{50, -11.5, kRadius}})).empty());
@@ -65,7 +65,7 @@ TEST(BeyondFrame, AnEmptyBorderHasNone) {
 
 // Three beads touch a disc of which three pixels are visible. Without that disc in the fit, each of the three
 // moved by 0.1 to 0.3 px.
-TEST(BeyondFrame, ItsNeighboursAreNotMoved) {
+TEST(OutOfFrameDiscs, ItsNeighboursAreNotMoved) {
   const double y = 40, x = 92;
   rendered::Picture p = picture_of({{x, y, kRadius},
                                     {x + 15, y, kRadius},
@@ -86,7 +86,7 @@ TEST(BeyondFrame, ItsNeighboursAreNotMoved) {
 }
 
 // Beyond a corner the frame is extended as dark only where a wall reaches the corner.
-TEST(BeyondFrame, ABeadInACornerIsNoWall) {
+TEST(OutOfFrameDiscs, ABeadInACornerIsNoWall) {
   rendered::Picture p =
       picture_of({{1.2, 0.7, kRadius}, {98.4, 78.6, kRadius}, {30, 30, kRadius}, {60, 50, kRadius}});
   cv::Mat1b frame = rendered::expose(rendered::expected(p), p, 51, 6);

@@ -50,7 +50,7 @@ std::size_t wrong(const std::vector<FrameOfBeads>& frames, const std::vector<Pix
   return n;
 }
 
-TEST(FirstSteps, AStackThatBeginsInABurstIsFollowedBackToIt) {
+TEST(InitialVelocities, AStackThatBeginsInABurstIsFollowedBackToIt) {
   const std::vector<FrameOfBeads> frames = burst();
   const std::vector<PixelPoint> steps = steps_of(frames);
   ASSERT_EQ(steps.size(), frames[0].places.size());
@@ -62,12 +62,12 @@ TEST(FirstSteps, AStackThatBeginsInABurstIsFollowedBackToIt) {
   EXPECT_EQ(wrong(frames, steps), 0U);
 }
 
-TEST(FirstSteps, OfACalmBeginningNothingIsSaid) {
+TEST(InitialVelocities, OfACalmBeginningNothingIsSaid) {
   EXPECT_TRUE(steps_of(burst(kFrames, 0)).empty());
   EXPECT_TRUE(steps_of(burst(kFrames, 0.02)).empty());
 }
 
-TEST(FirstSteps, ABeadThatIsNotInTheSecondFrameHasNone) {
+TEST(InitialVelocities, ABeadThatIsNotInTheSecondFrameHasNone) {
   std::vector<FrameOfBeads> frames = burst();
   frames[1].places.erase(frames[1].places.begin());  // a corner bead
   const std::vector<PixelPoint> steps = steps_of(frames);
@@ -76,7 +76,7 @@ TEST(FirstSteps, ABeadThatIsNotInTheSecondFrameHasNone) {
   EXPECT_EQ(std::count_if(steps.begin(), steps.end(), [](PixelPoint s) { return std::isnan(s.x_px); }), 1);
 }
 
-TEST(FirstSteps, TheFallIsTakenOff) {
+TEST(InitialVelocities, TheFallIsTakenOff) {
   constexpr double kFall = 1.5;
   std::vector<FrameOfBeads> frames = burst();
   for (std::size_t f = 0; f < frames.size(); ++f)
@@ -88,7 +88,7 @@ TEST(FirstSteps, TheFallIsTakenOff) {
     EXPECT_NEAR(steps[k].y_px, frames[1].places[k].y_px - frames[0].places[k].y_px - kFall, 1e-9) << k;
 }
 
-TEST(FirstSteps, ShortAndEmptyStacksHaveNone) {
+TEST(InitialVelocities, ShortAndEmptyStacksHaveNone) {
   EXPECT_TRUE(steps_of({}).empty());
   EXPECT_TRUE(steps_of(burst(1)).empty());
   EXPECT_TRUE(steps_of(burst(2)).empty());

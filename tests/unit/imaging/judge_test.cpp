@@ -78,7 +78,7 @@ TEST(Judge, TwoPopulationsAreTold) {
   }
 }
 
-TEST(Judge, OneBeadOneVerdict) {
+TEST(Judge, EachBeadHasOneVerdict) {
   EXPECT_EQ(judged(good(50, 50)), Verdict::bead);
   Detection b = good(50, 50);
   b.radius = 7.5 * 1.19;

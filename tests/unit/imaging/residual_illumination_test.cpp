@@ -1,4 +1,4 @@
-// The ripple of the illumination, found from the means of coarse tiles.
+// The residual illumination, found from the means of coarse tiles.
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ double rms_error(const cv::Mat1f& map, double amplitude) {
   return std::sqrt(squares / (kWide * kHigh));
 }
 
-TEST(LightRipple, IsSeenWhereThereIsOne) {
+TEST(ResidualIllumination, IsSeenWhereThereIsOne) {
   int by_chance = 0, seen = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     const Tiles noise = tiles_of(0, seed), rippled = tiles_of(2 * kNoise, seed);
@@ -55,7 +55,7 @@ TEST(LightRipple, IsSeenWhereThereIsOne) {
 }
 
 // A misplaced disc changes only its own tile, even by fifty times the noise.
-TEST(LightRipple, IsNotWhatOneTileHasForItself) {
+TEST(ResidualIllumination, IsNotWhatOneTileHasForItself) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     Tiles t = tiles_of(0, seed);
     t.mean(7, 5) = 50 * kNoise;
@@ -66,7 +66,7 @@ TEST(LightRipple, IsNotWhatOneTileHasForItself) {
 
 // A fit of a wave with a dozen crests to 384 noisy tiles passes a fraction of the noise, given by its degrees
 // of freedom: less than half, more than a tenth.
-TEST(LightRipple, IsFoundBelowTheNoiseOfATile) {
+TEST(ResidualIllumination, IsFoundBelowTheNoiseOfATile) {
   for (const double amplitude : {0.03, 0.3}) {
     double squares = 0;
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -80,7 +80,7 @@ TEST(LightRipple, IsFoundBelowTheNoiseOfATile) {
   }
 }
 
-TEST(LightRipple, FollowsItsNeighboursWhereNothingIsSeen) {
+TEST(ResidualIllumination, FollowsItsNeighboursWhereNothingIsSeen) {
   Tiles t = tiles_of(0.1, 3);
   for (const cv::Point hole : {cv::Point(4, 4), cv::Point(10, 15), cv::Point(11, 15)}) {
     t.mean(hole) = 0;
@@ -93,7 +93,7 @@ TEST(LightRipple, FollowsItsNeighboursWhereNothingIsSeen) {
 
 // For a tilted plane, extrapolation would continue the slope beyond the last visible tile; the map of the
 // illumination must not.
-TEST(LightRipple, GoesNowhereBeyondWhatIsSeen) {
+TEST(ResidualIllumination, GoesNowhereBeyondWhatIsSeen) {
   Tiles t = tiles_of(0, 1);
   for (int y = 0; y < kHigh; ++y)
     for (int x = 0; x < kWide; ++x) {
