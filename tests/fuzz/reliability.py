@@ -69,17 +69,17 @@ def suite(name, tests, junit, commit, sanitizers):
 def page():
     text = ["# Reliability", "",
             "`./run` wrote this page from docs/reliability.csv, which it keeps.", "",
-            "**Bytes that readers meet** (`./run reliability`), as clang's libFuzzer counted them. An input is made from the files of",
-            "`tests/fuzz/corpus` by chance and by what code it reaches. A finding is an input that crashes the reader, lasts 20 s,",
-            "asks for more than a gigabyte, or meets an exception that says nothing to a user.",
+            "**Fuzzing of readers** (`./run reliability`), as counted by clang's libFuzzer. It varies the files of `tests/fuzz/corpus` at",
+            "random and keeps the variants that reach new code. A finding is an input that crashes the reader, takes 20 s, asks for more",
+            "than a gigabyte, or causes an exception without a message for a user. `SECURITY.md` describes the findings of `hdf5`.",
             "", "| campaign | reader | executions | findings | last run | commit | sanitizers |", "|---|---|---|---|---|---|---|"]
     table = lambda found: [f"| {' | '.join(str(r[c]) for c in [*COLUMNS[:4], 'date', 'commit', 'sanitizers'])} |" for r in found]
     fuzz = summed((r for r in rows() if r["campaign"] == "fuzz"), without=["date"])
     for name in readers():
         text += table(r for r in fuzz if r["subject"] == name) or [f"| fuzz | {name} | 0 | – | – | – | – |"]
-    text += ["", "**Tests under sanitizers** (`./run asan`, `./run tsan`). A sanitizer ends the program that it finds at fault, and so the",
-             "test. The kernels for vector units (`sim/kernels/kernels_avx*.cpp`) are not looked into: the agreement tests run the same text as",
-             "scalar kernels. Nor are libraries.",
+    text += ["", "**Tests under sanitizers** (`./run asan`, `./run tsan`). A sanitizer ends a program in which it finds a fault, and the test",
+             "then fails. The kernels for vector units (`sim/kernels/kernels_avx*.cpp`) and libraries are not instrumented; the agreement tests",
+             "run the same source as scalar kernels.",
              "", "| campaign | tests | ran | failed | last run | commit | sanitizers |", "|---|---|---|---|---|---|---|"]
     suites = [r for r in rows() if r["campaign"] != "fuzz"]
     text += table(suites) or ["| – | – | 0 | – | – | – | – |"]
