@@ -331,7 +331,7 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
   nlohmann::json document = describe(run, options.output, begun_at, seconds);
   document["warnings"] = warnings;
   std::string text = as_text(document, common.verbose);
-  state_counters(run.kernel(), profile);
+  state_counters(run.solver(), profile);
   profile.add_to(document, text, sim::threads_for(run.system().beads.size(), common.threads));
   print_result(common, document, text);
 }

@@ -198,6 +198,11 @@ void bind_scene(py::module_& module) {
           },
           py::arg("seconds") = 0.3, py::arg("threads") = 0, py::arg("callback") = py::none(),
           header_text("sim/accuracy/plan_json.hpp", "cost_json"))
+      .def(py::pickle([](const sim::Scene& s) { return py::make_tuple(s.resolved, s.file); },
+                      [](const py::tuple& state) {
+                        return sim::read_scene_text(state[0].cast<std::string>(),
+                                                    state[1].cast<std::string>());
+                      }))
       .def("__repr__", [](const sim::Scene& s) {
         return fmt::format("<twincell.Scene {}: Gamma = {:.6g}, {} cycles after {}>", s.file,
                            s.g() > 0 ? s.drive.gamma() : 0, s.cycles, s.discard);

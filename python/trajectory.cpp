@@ -397,11 +397,46 @@ std::shared_ptr<Trajectory> from_arrays(const py::object& positions, const py::o
   return std::make_shared<Trajectory>(std::move(memory));
 }
 
+/// A folder for temporary files; the caller calls its cleanup().
+py::object temporary_folder() {
+  return py::module_::import("tempfile").attr("TemporaryDirectory")();
+}
+std::filesystem::path file_in(const py::object& folder) {
+  return std::filesystem::path(folder.attr("name").cast<std::string>()) / "trajectory.h5";
+}
+
 void write(Trajectory& trajectory, const std::filesystem::path& path) {
   require_no_input(path, {trajectory.source().name()});
   H5mdWriter writer(path, trajectory.info());
   for (std::size_t t = 0; t < trajectory.n_frames(); ++t) writer.append(*trajectory.frame(t));
   writer.finish();
+}
+
+/// State for pickle: of a file its absolute path, in memory the bytes of its H5MD file.
+py::tuple pickled(Trajectory& trajectory) {
+  if (trajectory.in_file())
+    return py::make_tuple(std::filesystem::absolute(trajectory.source().name()).string());
+  const py::object folder = temporary_folder();
+  write(trajectory, file_in(folder));
+  const py::object bytes =
+      py::module_::import("pathlib").attr("Path")(file_in(folder).string()).attr("read_bytes")();
+  folder.attr("cleanup")();
+  return py::make_tuple(bytes);
+}
+std::shared_ptr<Trajectory> unpickled(const py::tuple& state) {
+  if (py::isinstance<py::str>(state[0]))
+    return std::make_shared<Trajectory>(std::filesystem::path(state[0].cast<std::string>()));
+  const py::object folder = temporary_folder();
+  py::module_::import("pathlib").attr("Path")(file_in(folder).string()).attr("write_bytes")(state[0]);
+  std::optional<SharedFrames> frames;
+  {
+    const H5mdReader file(file_in(folder));
+    frames.emplace(file.info());
+    Frame frame;
+    for (std::size_t k = 0; k < file.n_frames(); ++k) file.read(k, frame), frames->append(frame);
+  }
+  folder.attr("cleanup")();
+  return std::make_shared<Trajectory>(std::move(*frames));
 }
 
 }  // namespace
@@ -573,6 +608,7 @@ void bind_trajectory(py::module_& module) {
                                                   : from_json(t.info().tracking_json);
           },
           header_text(kHeader, "TrajectoryInfo::tracking_json"))
+      .def(py::pickle(&pickled, &unpickled))
       .def("__repr__", [](const Trajectory& t) {
         return fmt::format("<twincell.Trajectory of {}: {} frames of {} beads, {}>", t.source().name(),
                            t.n_frames(), t.info().n_beads, t.info().source);

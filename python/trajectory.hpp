@@ -44,6 +44,7 @@ class Trajectory {
   [[nodiscard]] const TrajectorySource& source() const { return *source_; }
   [[nodiscard]] const TrajectoryInfo& info() const { return source_->info(); }
   [[nodiscard]] std::size_t n_frames() const { return source_->n_frames(); }
+  [[nodiscard]] bool in_file() const { return memory_ == nullptr; }
   /// Frame `index`. \pre index < n_frames()
   std::shared_ptr<const Frame> frame(std::size_t index);
 

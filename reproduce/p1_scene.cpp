@@ -31,6 +31,14 @@ time.cycles = {}
 
 namespace {
 
+/// What happens at the Coulomb limit under a law of contact.tangential.
+std::string slip_rule(const std::string& law) {
+  if (law == "spring")
+    return "at the Coulomb limit the spring is shortened so that spring and dashpot give exactly the limit";
+  if (law == "spring-limited") return "the limit acts on the spring, the dashpot is dropped";
+  return fmt::format("that of contact.tangential = \"{}\"", law);
+}
+
 /// Scene of a run. The strength of the drive is arbitrary, because no condition depends on it.
 sim::Scene read(const P1Run& run) {
   std::string text = p1_scene(run);
@@ -53,10 +61,7 @@ std::vector<std::string> p1_contact_conditions(const std::string& keys) {
           bead.required("mu")),
       fmt::format("tension {} at the end of a contact",
                   scene.contact.normal == "linear" ? "allowed" : "clipped"),
-      fmt::format("slip rule: {}", scene.contact.tangential == "spring"
-                                       ? "at the Coulomb limit the spring is shortened so that spring and "
-                                         "dashpot give exactly the limit"
-                                       : "the limit acts on the spring, the dashpot is dropped")};
+      "slip rule: " + slip_rule(scene.contact.tangential)};
 }
 
 std::string p1_step_condition(const P1Run& run) {

@@ -29,7 +29,12 @@ struct Slab {
 
 class Stress : public Observable {
  public:
-  explicit Stress(const AnalysisContext& context) : info_(context.info), wall_sums_(info_.walls.size(), 0) {}
+  explicit Stress(const AnalysisContext& context) : info_(context.info), wall_sums_(info_.walls.size(), 0) {
+    if (!info_.box.periodic(Axis::z)) return;
+    const double height = info_.box.size().z();
+    period_ = std::max<std::int64_t>(1, std::llround(std::min(height / kStressSlab, 1e9)));
+    thickness_ = height / static_cast<double>(period_);
+  }
 
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
@@ -86,11 +91,11 @@ class Stress : public Observable {
     for (const auto& [k, slab] : slabs_) {
       xx.push_back(slab.xx / static_cast<double>(frames_));
       zz.push_back(slab.zz / static_cast<double>(frames_));
-      z.push_back((static_cast<double>(k) + 0.5) * kStressSlab);
+      z.push_back((static_cast<double>(k) + 0.5) * thickness_);
     }
     const std::string empty = info_.columns.contact_forces ? "no frame has a contact" : none;
     const auto array = [&](const char* name, const std::vector<double>& values, const std::string& of_unit,
-                           const char* convention) {
+                           const std::string& convention) {
       return array_of(
           values,
           {.name = name, .unit = of_unit, .n_of = "slabs", .convention = convention, .source = kSource},
@@ -98,7 +103,10 @@ class Stress : public Observable {
     };
     all.push_back(array("stress_xx_z", xx, unit, "branch vectors cut at the slabs; mean over all frames"));
     all.push_back(array("stress_zz_z", zz, unit, "branch vectors cut at the slabs; mean over all frames"));
-    all.push_back(array("stress_z", z, "sigma", "centres of slabs of thickness sigma above the plate"));
+    all.push_back(array("stress_z", z, "sigma",
+                        period_ > 0
+                            ? fmt::format("centres of {} slabs above the lower border of the period", period_)
+                            : "centres of slabs of thickness sigma above the plate"));
     std::vector<double> walls;
     for (const double sum : wall_sums_) walls.push_back(sum / static_cast<double>(frames_));
     all.push_back(
@@ -120,18 +128,19 @@ class Stress : public Observable {
   /// thickness of a slab.
   void add_to_slabs(double top, const Vec3& branch, const Vec3& force, double per_area) {
     const double low = std::min(top, top - branch.z()), high = std::max(top, top - branch.z());
-    const auto first = static_cast<std::int64_t>(std::floor(low / kStressSlab)),
-               last = static_cast<std::int64_t>(std::floor(high / kStressSlab));
+    const auto first = static_cast<std::int64_t>(std::floor(low / thickness_)),
+               last = static_cast<std::int64_t>(std::floor(high / thickness_));
     constexpr std::int64_t kMostSlabs = 100'000;  // a damaged file may have a bead at 1e7
     constexpr double kRounding = 1e-6;  // a wall lies on the border of a slab up to the rounding of overlaps
     if (last - first > kMostSlabs) return;
     for (std::int64_t k = first; k <= last; ++k) {
-      const double bottom = static_cast<double>(k) * kStressSlab;
+      const double bottom = static_cast<double>(k) * thickness_;
       const double share =
-          high > low ? (std::min(high, bottom + kStressSlab) - std::max(low, bottom)) / (high - low) : 1;
+          high > low ? (std::min(high, bottom + thickness_) - std::max(low, bottom)) / (high - low) : 1;
       if (!(share > kRounding)) continue;
-      slabs_[k].xx += share * force.x() * branch.x() * per_area / kStressSlab;
-      slabs_[k].zz += share * force.z() * branch.z() * per_area / kStressSlab;
+      Slab& slab = slabs_[period_ > 0 ? (k % period_ + period_) % period_ : k];
+      slab.xx += share * force.x() * branch.x() * per_area / thickness_;
+      slab.zz += share * force.z() * branch.z() * per_area / thickness_;
     }
   }
 
@@ -177,6 +186,8 @@ class Stress : public Observable {
   Tensor contact_ = Tensor::Zero(), kinetic_ = Tensor::Zero();
   SeriesAverage pressure_, kinetic_pressure_;
   std::map<std::int64_t, Slab> slabs_;
+  std::int64_t period_ = 0;  // slabs of a period along z; 0 if there is none
+  double thickness_ = kStressSlab;
   std::vector<double> wall_sums_;
 };
 

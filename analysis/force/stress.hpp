@@ -21,7 +21,8 @@ inline constexpr double kStressSlab = 1;  ///< sigma, thickness of a slab of the
 ///
 /// The profile is the stress coarse-grained with a box function (Goldhirsch 2010): the part of each branch
 /// vector that lies in a horizontal slab of thickness sigma counts for this slab, whose width (and depth) is
-/// that of the window. Heights are relative to the plate.
+/// that of the window. Heights are relative to the plate; in a cell that is periodic along z the slabs fill
+/// one period, are L_z/round(L_z/sigma) thick, and their heights are relative to its lower border.
 ///
 /// Results; units are m g/sigma in 2D and m g/sigma^2 in 3D:
 ///

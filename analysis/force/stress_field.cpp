@@ -28,6 +28,13 @@ class StressField : public Observable {
                  static_cast<std::size_t>(std::max(1.0, std::round(width_ / context.options.field_cell))));
     cell_ = width_ / static_cast<double>(columns_);
     depth_ = info_.box.dimension == 2 ? 1 : info_.box.size().y();
+    row_height_ = cell_;
+    if (!info_.box.periodic(Axis::z)) return;
+    period_ = info_.box.size().z();
+    rows_of_period_ =
+        std::min(kMostColumns,
+                 static_cast<std::size_t>(std::max(1.0, std::round(period_ / context.options.field_cell))));
+    row_height_ = period_ / static_cast<double>(rows_of_period_);
   }
 
   void add(const FrameView& view) override {
@@ -37,7 +44,7 @@ class StressField : public Observable {
     for (const ContactForce& c : frame.contact_forces) {
       const Vec3 end = frame.position[static_cast<std::size_t>(c.i)] - plate * Vec3::UnitZ();
       if (const Vec3 branch = branch_vector(c, info_);
-          end.allFinite() && std::abs(end.z()) / cell_ * static_cast<double>(columns_) < kMostPoints)
+          end.allFinite() && std::abs(end.z()) / row_height_ * static_cast<double>(columns_) < kMostPoints)
         add_contact(end, branch, c.force());
     }
     ++frames_;
@@ -79,7 +86,7 @@ class StressField : public Observable {
   [[nodiscard]] double x_of(std::size_t column) const {
     return info_.box.lower.x() + (static_cast<double>(column) + 0.5) * cell_;
   }
-  [[nodiscard]] double z_of(std::size_t row) const { return (static_cast<double>(row) + 0.5) * cell_; }
+  [[nodiscard]] double z_of(std::size_t row) const { return (static_cast<double>(row) + 0.5) * row_height_; }
 
   /// Adds f_a l_b times the integral of the Gaussian along the branch, which ends at `end`.
   void add_contact(const Vec3& end, const Vec3& branch, const Vec3& force) {
@@ -89,9 +96,11 @@ class StressField : public Observable {
     const double low = std::min(end.z(), end.z() - branch.z()),
                  high = std::max(end.z(), end.z() - branch.z());
     const auto row_at = [&](double z) {
-      return static_cast<std::size_t>(std::max(0.0, std::floor(z / cell_)));
+      return static_cast<std::size_t>(std::max(0.0, std::floor(z / row_height_)));
     };
-    const std::size_t first = row_at(low - kReach), last = row_at(high + kReach);
+    const bool repeats = rows_of_period_ > 0;
+    const std::size_t first = repeats ? 0 : row_at(low - kReach),
+                      last = repeats ? rows_of_period_ - 1 : row_at(high + kReach);
     rows_ = std::max(rows_, last + 1);
     sums_.resize(rows_ * columns_, {0, 0, 0, 0});
     const bool periodic = info_.box.periodic(Axis::x);
@@ -100,7 +109,9 @@ class StressField : public Observable {
         double dx = x_of(column) - end.x();
         if (periodic) dx = std::remainder(dx + branch.x() / 2, width_) - branch.x() / 2;
         if (std::abs(dx + branch.x() / 2) > kReach + length / 2) continue;
-        const double dz = z_of(row) - end.z(), along = dx * ux + dz * uz;
+        double dz = z_of(row) - end.z();
+        if (repeats) dz = std::remainder(dz + branch.z() / 2, period_) - branch.z() / 2;
+        const double along = dx * ux + dz * uz;
         const double across = dx * dx + dz * dz - along * along;
         const double weight = std::exp(-across / (2 * kCoarseWidth * kCoarseWidth)) /
                               (std::sqrt(2 * std::numbers::pi) * kCoarseWidth) * mean_along(along, length);
@@ -121,7 +132,8 @@ class StressField : public Observable {
 
   const TrajectoryInfo& info_;
   std::size_t columns_ = 1, rows_ = 0, frames_ = 0;
-  double width_ = 1, cell_ = 1, depth_ = 1;
+  std::size_t rows_of_period_ = 0;  // 0 unless the cell is periodic along z
+  double width_ = 1, cell_ = 1, row_height_ = 1, depth_ = 1, period_ = 0;
   std::vector<std::array<double, 4>> sums_;  ///< [rows x columns] xx, xz, zx, zz
 };
 

@@ -18,10 +18,10 @@ inline constexpr double kCoarseWidth = 1;  ///< sigma, w of the Gaussian
 /// difference of error functions. Its integral over the plane is sum f_a l_b, so that the mean of the field
 /// is the virial stress. In 3D the branch vectors are projected onto the plane, and the field is the mean
 /// over the depth of the cell. Mean over frames, at points in the middle of cells of side about
-/// AnalysisOptions::field_cell, heights relative to the plate, up to 4 w above the highest contact; a period
-/// along x is respected, one along z is not. The Gaussian reaches beyond the walls and the surface: within 2
-/// w of them the field is smaller than the stress in the bed. Results; units are m g/sigma in 2D and m
-/// g/sigma^2 in 3D:
+/// AnalysisOptions::field_cell, heights relative to the plate, up to 4 w above the highest contact; in a cell
+/// that is periodic along z the rows fill one period, with heights relative to its lower border. The Gaussian
+/// reaches beyond the walls and the surface: within 2 w of them the field is smaller than the stress in the
+/// bed. Results; units are m g/sigma in 2D and m g/sigma^2 in 3D:
 ///
 /// - stress_field: [rows x columns x 2 x 2] in the order x, z; row 0 is the lowest
 /// - stress_field_x: [columns] x of the points, sigma

@@ -3,6 +3,7 @@
 /// Evaluation of one contact, from relative motion to force. The all-pairs oracle, the scalar kernel and the
 /// SIMD kernels share this code, for 2D and 3D, for bead-bead and bead-wall contacts.
 
+#include "sim/contact/velocity.hpp"
 #include "sim/laws/axes.hpp"
 
 namespace twincell::sim {
@@ -51,13 +52,6 @@ struct ContactLoad {
   V q[kTurns<D>];
   V q_i[kTurns<D>];  ///< rolling torque on i per radius
   V q_j[kTurns<D>];  ///< rolling torque on j per radius
-};
-
-/// Velocity that the laws use at the end of a step. Leapfrog gives positions there, but velocities only in
-/// the middle of steps.
-enum class Velocity {
-  half_step,  ///< velocity in the middle of the step: dashpots lag by dt/2, first order in dt
-  full_step,  ///< velocity at the end, from the last two middles: second order during a contact
 };
 
 /// Number of values that a contact remembers: those of its laws; with Velocity::full_step also the normal,

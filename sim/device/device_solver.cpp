@@ -288,7 +288,7 @@ class DeviceSolver : public Solver {
     }
     there_.periodic = s.period[0] > 0 || s.period[1] > 0 || s.period[2] > 0;
     there_.dt = s.dt;
-    there_.quantum = grain_of_sums(plan_);
+    there_.quantum = rounding_constant(plan_);
     there_.overlap_bound = limits_.overlap;
     there_.spin = plan_.rotation, there_.locate = plan_.locate;
     for (Size w = 0; w < s.walls.size(); ++w) {

@@ -145,7 +145,7 @@ void pass(Direction& a, C& c, P& plain) {
   a.rows("rim_speeds", s.rim_speeds);
   a.list("contact_pairs", plain.contacts.pairs);
   a.list("contact_values", plain.contacts.values);
-  a.list("kernel", s.kernel);
+  a.list("kernel", s.solver);
   a.list("tracer", s.tracer);
   a.number("looked_at", s.looked_at);
   a.number("touching", s.touching);

@@ -23,7 +23,7 @@ class Evaluation {
         kernels_(kScalar.find({plan.key.dimension, plan.key.normal, plan.key.tangential, plan.key.rolling,
                                Velocity::half_step})),
         beads_(plan),
-        quantum_(grain_of_sums(plan)),
+        quantum_(rounding_constant(plan)),
         record_(plan.dimension == 2 ? kRecord<2> : kRecord<3>) {
     std::vector<std::int32_t> order(s.beads.size());
     std::iota(order.begin(), order.end(), 0);

@@ -92,8 +92,8 @@ double largest_kick(const System& s, const std::vector<Bead>& before) {
 }  // namespace
 
 std::int64_t steps_per_call(std::size_t beads) {
-  // Every call of the solver builds the inner list. A list lives for about 64 steps: shorter calls would
-  // build lists more often than the beads need.
+  // A call packs the beads and unpacks them again, and builds the inner list where it cannot go on from the
+  // last call. A list lives for about 64 steps, so calls of that length cost little more than one long call.
   constexpr std::int64_t kListLife = 64;
   return std::max(kListLife, 1 + 2'000'000 / (1 + static_cast<std::int64_t>(beads)));
 }
@@ -171,8 +171,8 @@ Simulation::Simulation(Scene scene, RunState state, SolverKind kind, int threads
   // A height that the scene sets without a lid is a limit; a height chosen by the program only keeps the box
   // of the file finite.
   limits.ceiling = scene_.lid || scene_.bottom == Edge::periodic ? 0 : scene_.height.value_or(0);
-  kernel_ = make_solver(plan_, limits, kind, threads);
-  kernel_->restore(std::move(state.contacts));
+  solver_ = make_solver(plan_, limits, kind, threads);
+  solver_->restore(std::move(state.contacts));
   if (driven_)
     system_.envelope = scene_.envelope;
   else
@@ -183,7 +183,7 @@ Simulation::Simulation(Scene scene, RunState state, SolverKind kind, int threads
   system_.forces_known = !state.forces.empty();
   system_.forces = std::move(state.forces);
   system_.rim_speeds = std::move(state.rim_speeds);
-  kernel_->recall(system_, state.kernel);
+  solver_->recall(system_, state.solver);
   if (driven_ || system_.step > 0) return;
   try {
     check_motion(system_, limits);
@@ -229,7 +229,7 @@ std::vector<std::string> Simulation::warnings() const {
         fmt::format("the bed still had a kinetic energy of {:.3g} m g sigma per bead when "
                     "start.settle_limit = {:g} ended its settling.",
                     settled_.energy_per_bead, scene_.settle_limit));
-  if (driven_ && scene_.in_motion && plan_.history && steps_done_ == 0 && kernel_->contacts().empty() &&
+  if (driven_ && scene_.in_motion && plan_.history && steps_done_ == 0 && solver_->contacts().empty() &&
       beads_in_contact(system_, Progress::none()) > 0)
     all.push_back(
         "the start in motion contains no contact springs (time.springs of the run that wrote it), so the "
@@ -266,8 +266,8 @@ RunState Simulation::state() const {
   state.beads = system_.beads;
   if (system_.forces_known) state.forces = system_.forces;
   state.rim_speeds = system_.rim_speeds;
-  state.contacts = kernel_->contacts();
-  state.kernel = kernel_->memory();
+  state.contacts = solver_->contacts();
+  state.solver = solver_->memory();
   state.tracer = tracer_;
   state.looked_at = looked_at_;
   state.touching = touching_;
@@ -327,7 +327,7 @@ Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
     if (plan_.rotation) frame.spin.emplace_back(b.spin_x, -b.spin, b.spin_z);
   }
   if (scene_.springs) {
-    frame.contacts = kernel_->contacts();
+    frame.contacts = solver_->contacts();
     const Vec3 unknown = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
     const std::size_t n = system_.beads.size();
     const bool known = system_.forces_known && system_.forces.size() == n;
@@ -339,7 +339,7 @@ Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
       frame.rim_speed.push_back(system_.rim_speeds.size() == n ? system_.rim_speeds[i] : unknown);
     }
   }
-  if (scene_.contacts) frame.contact_forces = contact_forces(plan_, system_, kernel_->contacts());
+  if (scene_.contacts) frame.contact_forces = contact_forces(plan_, system_, solver_->contacts());
   const std::int64_t index = frame_at(system_.step);
   if (index > 0 && temperature_.steps == step_of(index) - step_of(index - 1)) {
     const auto steps = static_cast<double>(temperature_.steps);
@@ -383,13 +383,13 @@ std::int64_t Simulation::sample_at(std::int64_t j, std::int64_t interval) const 
 
 void Simulation::advance(const std::vector<std::int64_t>& pieces, const std::function<void()>& after,
                          StageTimes* times, std::string_view stage) {
-  if (times == nullptr) return kernel_->advance_in_pieces(system_, pieces, after);
+  if (times == nullptr) return solver_->advance_in_pieces(system_, pieces, after);
   Stage stepping(times, stage, "particle-steps");
-  const double before = kernel_->counters().bytes;
+  const double before = solver_->counters().bytes;
   const std::int64_t begin = system_.step;
-  kernel_->advance_in_pieces(system_, pieces, after);
+  solver_->advance_in_pieces(system_, pieces, after);
   stepping.count(static_cast<double>(system_.beads.size()) * static_cast<double>(system_.step - begin),
-                 kernel_->counters().bytes - before);
+                 solver_->counters().bytes - before);
 }
 
 void Simulation::take_sample(std::int64_t j, std::int64_t interval) {

@@ -46,7 +46,7 @@ struct RunState {
   std::vector<Force> forces;     ///< at the present positions, or empty
   std::vector<Vec3> rim_speeds;  ///< as in System
   std::vector<ContactMemory> contacts;
-  std::vector<double> kernel;                ///< Solver::memory()
+  std::vector<double> solver;                ///< Solver::memory()
   std::vector<std::uint8_t> tracer;          ///< empty if not chosen yet
   std::int64_t looked_at = 0, touching = 0;  ///< bead records in frames so far, and those in contact
   TemperatureSums temperature;
@@ -108,11 +108,11 @@ class Simulation {
 
   /// Number of steps under drive done by this object.
   [[nodiscard]] std::int64_t steps_done() const { return steps_done_; }
-  [[nodiscard]] std::int64_t list_builds() const { return kernel_->list_builds(); }
+  [[nodiscard]] std::int64_t list_builds() const { return solver_->list_builds(); }
   /// Fraction of bead records in frames in which the bead touches another or a wall. In a dilute gas it
   /// equals t_c times the collision rate; theories of hard beads require a value below 0.1.
   [[nodiscard]] std::optional<double> contact_fraction() const;
-  [[nodiscard]] const Solver& kernel() const { return *kernel_; }
+  [[nodiscard]] const Solver& solver() const { return *solver_; }
 
  private:
   void advance(const std::vector<std::int64_t>& pieces, const std::function<void()>& after, StageTimes* times,
@@ -134,7 +134,7 @@ class Simulation {
   System system_;
   std::vector<std::uint8_t> tracer_;
   double height_ = 0;
-  std::unique_ptr<Solver> kernel_;
+  std::unique_ptr<Solver> solver_;
   bool driven_ = false;
   int quiet_ = 0;
   RelaxationResult settled_;

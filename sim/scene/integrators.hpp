@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/choice.hpp"
-#include "sim/contact/contact.hpp"
+#include "sim/contact/velocity.hpp"
 
 namespace twincell::sim {
 

@@ -39,7 +39,7 @@ class AllPairsSolver : public Solver {
         memory_(static_cast<Size>(kernels_.remembered)),
         dimension_(static_cast<Size>(plan.dimension)),
         beads_(plan_),
-        quantum_(grain_of_sums(plan)) {}
+        quantum_(rounding_constant(plan)) {}
 
   void advance(System& s, std::int64_t steps) override {
     if (s.beads.empty() || steps <= 0) {

@@ -45,7 +45,7 @@ class ListSolver : public Solver {
       : limits_(limits),
         target_(target),
         threads_(threads),
-        quantum_(grain_of_sums(plan)),
+        quantum_(rounding_constant(plan)),
         beads_(plan, target) {}
 
   void advance(System& s, std::int64_t steps) override;

@@ -175,7 +175,7 @@ void PackedBeads::add_plate_drag(const System& s, double velocity_x, double velo
   }
 }
 
-double grain_of_sums(const Plan& plan) {
+double rounding_constant(const Plan& plan) {
   // Twice the force at the overlap bound, so that dashpots and several contacts fit too. A power of two, so
   // that similar systems remain similar to the bit. For larger forces, sums are only rounded to a coarser
   // quantum.

@@ -83,6 +83,6 @@ class PackedBeads {
 };
 
 /// The constant that rounds forces to a quantum with which sums are exact (contact.hpp rounded()).
-double grain_of_sums(const Plan& plan);
+double rounding_constant(const Plan& plan);
 
 }  // namespace twincell::sim

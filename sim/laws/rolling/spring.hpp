@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Rolling resistance by a torsional spring and dashpot with a limit, M = -(k_r theta + c_r w),
-/// M| <= mu_r R_eff |F_n|, where theta is the angle rolled since first touch and w the relative angular
+/// |M| <= mu_r R_eff |F_n|, where theta is the angle rolled since first touch and w the relative angular
 /// velocity (Ai et al., Powder Technol. 206, 269, 2011, model C).
 
 #include <cmath>
@@ -28,8 +28,9 @@ struct RollingSpring {
     return {t.required("k_r", 0, 1e12, true), t.number("c_r", 0, 1e12).value_or(0),
             t.required("mu_r", 0, 1e3)};
   }
-  /// Half an oscillation period of two equal discs about their contact; with damping, the decay time of the
-  /// dashpot if that is shorter. A torsional spring softer than k_t r^2 never sets the step.
+  /// A lower bound of half the oscillation period pi sqrt(I/(2 k_r)) of the angle rolled, sqrt(6) below it
+  /// for two equal discs; with damping, of the decay time of the dashpot if that is shorter. A torsional
+  /// spring softer than k_t r^2 never sets the step.
   [[nodiscard]] double shortest_time(const PairScale& p) const {
     // 1/I of the pair is at most 4 inv_m_t/R^2 <= inv_m_t/r_eff^2 for discs and spheres.
     const double inv_inertia = p.inv_m_t / (p.r_eff * p.r_eff);

@@ -34,9 +34,10 @@ struct MindlinSlider {
   [[nodiscard]] double stiffness(double r_eff) const {
     return 2 * youngs_modulus * std::sqrt(r_eff) / ((2 - poisson_ratio) * (1 + poisson_ratio));
   }
-  /// This law alone knows no overlap and sets no limit on the step. With Hertz's law its stiffness stays
-  /// below that of the normal force; the plan limits the step where the normal law has a stiffness of its
-  /// own.
+  /// This law alone knows no overlap and sets no limit on the step; the plan limits the step where the normal
+  /// law has a stiffness of its own. With Hertz's law, whose contact time sets the step, the tangential
+  /// oscillation is faster than the normal one by sqrt(2 (1 - nu)/(2 - nu) m_eff/m_t), at most 1.73 for discs
+  /// and 1.87 for spheres: the step resolves both.
   [[nodiscard]] double shortest_time(const PairScale& /*p*/) const { return HUGE_VAL; }
   [[nodiscard]] std::array<double, kConstants> constants(const PairScale& p) const {
     return {-stiffness(p.r_eff), mu};

@@ -69,6 +69,23 @@ TEST(BinaryCollision, HeadOnHasTheClosedFormsRestitutionAndDuration) {
   }
 }
 
+// F_n has a kink where the pull would begin (Schwager & Poeschel 2007), and is 0 from there to the end of the
+// contact.
+TEST(BinaryCollision, WithoutTensionHasTheClosedFormsRestitution) {
+  for (const double e : {0.3, 0.7, 0.9})
+    for (const double mu : {0.0, 0.4}) {
+      const Impact impact{4, 0, 0, mu, e, 2};
+      ContactLaws laws = laws_of(impact);
+      laws.normal = NoTensionSpringDashpot{std::get<LinearSpringDashpot>(laws.normal)};
+      const CollisionSetting s = setting_of(impact, laws);
+      const CollisionEnd end =
+          integrate_collision(s, {Vec3(0, 0, 1), Vec3(0, 0, -4), Vec3::Zero()}, 0, 1, 1e-12);
+      ASSERT_TRUE(end.parted);
+      const double exact = std::get<NoTensionSpringDashpot>(laws.normal).collision(s.pair).restitution;
+      EXPECT_NEAR(end.motion.u.z() / 4, exact, 1e-10) << e << ", mu " << mu;
+    }
+}
+
 /// The same collision by the time-stepping solver with n steps per contact. Returns v_i - v_j and R_i w_i +
 /// R_j w_j after the collision.
 std::pair<Vec3, Vec3> by_steps(const Impact& m, double n) {
@@ -455,9 +472,12 @@ TEST(Flights, AreRefusedWhereTheyAreNotExact) {
   EXPECT_THROW(
       make_plan(scene_of(paper + flights("[contact]\nrolling = \"spring\"\nk_r = 1.0\nmu_r = 0.1\n"))),
       ConfigError);
-  EXPECT_THROW(make_plan(scene_of("preset = \"bhateja-2016-smooth-2d\"\n" + flights("[drive]\nk_m = 50.0\n") +
-                                  "[contact]\nnormal = \"clipped\"\n")),
-               ConfigError);
+  EXPECT_THROW(
+      make_plan(scene_of(paper + flights("[contact]\nnormal = \"cohesive\"\nsurface_energy = 0.1\n"))),
+      ConfigError);
+  EXPECT_TRUE(make_plan(scene_of("preset = \"bhateja-2016-smooth-2d\"\n" + flights("[drive]\nk_m = 50.0\n") +
+                                 "[contact]\nnormal = \"linear-no-tension\"\n"))
+                  .event_driven);
   EXPECT_TRUE(make_plan(scene_of(gas("rough-2d", 50))).event_driven);
   EXPECT_FALSE(make_plan(scene_of(gas("rough-2d", 5))).event_driven);
   EXPECT_FALSE(make_plan(scene_of(gas("rough-2d", 50, "[beads]\ncount = 400\n"))).event_driven);

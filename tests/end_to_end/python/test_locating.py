@@ -83,6 +83,12 @@ def test_located_beads_are_linked(tmp_path, tracked):
         twincell.track(some, bright=True, **names)
 
 
+def test_keys_of_the_cell_are_set_as_in_simulate():
+    for keys in ({"cell.width": 12.5}, ["cell.width=12.5"], "cell.width=12.5"):
+        box = twincell.track(DEMO, cell=DEMO / "CELL.toml", frames="0:40", set=keys).box
+        assert box.upper[0] - box.lower[0] == 12.5
+
+
 def test_wrong_options_have_the_sentence_of_the_program(tmp_path):
     out = tmp_path / "x.h5"
     said, _ = sentence_of_option("track", DEMO, "-o", out, "--phase-lock", "often")

@@ -1,4 +1,6 @@
 """Frames, trajectories and their analysis from Python."""
+import pickle
+
 import numpy as np
 import pytest
 
@@ -312,6 +314,24 @@ def test_an_output_is_never_an_input(tmp_path, scene_file):
         with pytest.raises(twincell.ConfigError, match="the output is an input of the same call"):
             trajectory.write(output)
     assert start.read_bytes() == before
+
+
+def test_trajectories_and_scenes_are_pickled(tmp_path, sim_file, scene_file):
+    """As multiprocessing does it: of a file the path, in memory all numbers."""
+    of_file = twincell.Trajectory.open(sim_file)
+    again = pickle.loads(pickle.dumps(of_file))
+    assert again.name == str(sim_file.resolve())
+    scene = twincell.Scene.from_toml(scene_file, set=["drive.gamma=1.3"])
+    copied = pickle.loads(pickle.dumps(scene))
+    assert copied.text == scene.text and copied.drive.gamma == scene.drive.gamma
+    run = twincell.simulate(scene, contacts=True)
+    same = pickle.loads(pickle.dumps(run))
+    assert same.name == "memory" and len(same) == len(run) and same.provenance == run.provenance
+    for t in (0, len(run) - 1):
+        assert np.array_equal(same.positions[t], run.positions[t])
+        assert np.array_equal(same.velocities[t], run.velocities[t])
+        assert np.array_equal(same.contacts[t]["normal_force"], run.contacts[t]["normal_force"])
+    assert twincell.analyze(same, ["s_b"])["s_b"].value == twincell.analyze(run, ["s_b"])["s_b"].value
 
 
 def test_docstrings_are_those_of_the_headers():

@@ -8,10 +8,12 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <tuple>
 
 #include "sim/accuracy/impacts.hpp"
 #include "sim/accuracy/work_precision.hpp"
+#include "sim/laws/axes.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/validation.hpp"
@@ -361,7 +363,9 @@ TEST(DefaultStep, IsTheFewestThatIsRightToAHundredthWhateverTheLaw) {
   constexpr double kFriction = 0.01, kRestitution = 2e-3, kNextOfTheLadder = 14.37;
   const std::string hertz = "normal = \"hertz\"\nyoungs_modulus = 1e7\nviscous_time = 2e-5\n",
                     dashpot = "tangential = \"dashpot\"\ngamma_t = 100.0\nmu = 0.4\n",
-                    falling = "normal = \"velocity-dependent-restitution\"\n";
+                    by_speed = "normal = \"velocity-dependent-restitution\"\n",
+                    mindlin = "tangential = \"mindlin\"\npoisson_ratio = 0.3\nmu = 0.6\n",
+                    cohesive = "normal = \"cohesive\"\npull_off_force = 0.1\n";
   const Case cases[] = {{"Table I", ""},
                         {"Table I, spheres in space", "", 3},
                         {"k_t/k_n = 2/7", "k_t = 285714.0\n"},
@@ -372,16 +376,22 @@ TEST(DefaultStep, IsTheFewestThatIsRightToAHundredthWhateverTheLaw) {
                         {"dashpot, spheres in space", dashpot, 3},
                         {"no friction", "tangential = \"none\"\n"},
                         {"no friction, e = 0.5", "tangential = \"none\"\nrestitution = 0.5\n"},
-                        {"falling restitution, spring", falling},
-                        {"falling restitution, no friction", falling + "tangential = \"none\"\n"},
+                        {"velocity-dependent restitution, spring", by_speed},
+                        {"velocity-dependent restitution, no friction", by_speed + "tangential = \"none\"\n"},
+                        {"cohesive", cohesive},
                         {"rolling", "rolling = \"spring\"\nk_r = 1e3\nmu_r = 0.1\nc_r = 1.0\n"},
                         {"Hertz, spring", hertz},
-                        {"Hertz, dashpot", hertz + dashpot}};
+                        {"Hertz, dashpot", hertz + dashpot},
+                        {"Hertz, Mindlin", hertz + mindlin},
+                        {"Hertz, Mindlin, spheres in space", hertz + mindlin, 3}};
+  std::set<std::string> untried;
+  for (const auto& words : {normal_words(), tangential_words()}) untried.insert(words.begin(), words.end());
   std::vector<Impact> bed;
   const std::vector<Impact> all = bed_impacts();
   for (std::size_t k = 0; k < all.size(); k += 4) bed.push_back(all[k]);
   for (const Case& c : cases) {
     const Scene scene = impact_scene(c.keys, c.dimension);
+    untried.erase(scene.contact.normal), untried.erase(scene.contact.tangential);
     const std::vector<Outcome> exact = limit_of_steps(bed, scene);
     const auto over_a_bed = [&](const StepSetting& setting) {
       return impact_errors(bed, exact, scene, setting, kBedPhases);
@@ -412,6 +422,7 @@ TEST(DefaultStep, IsTheFewestThatIsRightToAHundredthWhateverTheLaw) {
       EXPECT_GT(verlet.spin.rms / verlet.spin_change, 20 * kFriction);
     }
   }
+  EXPECT_TRUE(untried.empty()) << "no case tries " << *untried.begin();
 }
 
 }  // namespace

@@ -1,0 +1,14 @@
+#pragma once
+/// \file
+/// The choice of velocity at the end of a step.
+
+namespace twincell::sim {
+
+/// Velocity that the laws use at the end of a step. Leapfrog gives positions there, but velocities only in
+/// the middle of steps.
+enum class Velocity {
+  half_step,  ///< velocity in the middle of the step: dashpots lag by dt/2, first order in dt
+  full_step,  ///< velocity at the end, from the last two middles: second order during a contact
+};
+
+}  // namespace twincell::sim
