@@ -20,6 +20,7 @@
 #include "sim/accuracy/work_precision.hpp"
 #include "sim/laws/linear_collision.hpp"
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "sim/scene/scene.hpp"
 

@@ -10,6 +10,7 @@
 #include "analysis/motion/phase_thresholds.hpp"
 #include "core/error.hpp"
 #include "sim/run/simulation.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/collision.hpp"
 #include "tests/support/complaint.hpp"

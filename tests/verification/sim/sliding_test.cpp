@@ -13,6 +13,7 @@
 #include "sim/accuracy/impacts.hpp"
 #include "sim/accuracy/work_precision.hpp"
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/validation.hpp"
 
