@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "analysis/motion/phase_thresholds.hpp"
+#include "analysis/motion/bed_phase.hpp"
 #include "analysis/observable/observable.hpp"
 #include "analysis/report/colours.hpp"
 #include "analysis/report/figure_style.hpp"

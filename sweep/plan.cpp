@@ -7,7 +7,7 @@
 #include <charconv>
 #include <set>
 
-#include "analysis/motion/phase_thresholds.hpp"
+#include "analysis/motion/bed_phase.hpp"
 #include "analysis/observable/observable.hpp"
 #include "core/atomic_file.hpp"
 #include "core/cancellation.hpp"

@@ -56,7 +56,7 @@ Result mean_of(const SeriesAverage& series, Result r, const std::string& why_abs
 /// `why_absent` if no value is finite.
 Result array_of(const std::vector<double>& values, Result r, const std::string& why_absent);
 
-/// Readings of eq. B4 (s_b_of in phase_thresholds.hpp).
+/// Readings of eq. B4 (s_b_of in bouncing.hpp).
 enum class SbForm { variance, about_rest, as_printed };
 /// The form with this name. \throws ConfigError for an unknown name
 SbForm s_b_named(const std::string& name);
