@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "analysis/motion/bed_phase.hpp"
 #include "analysis/motion/centre_of_mass.hpp"
 #include "analysis/observable/observable.hpp"
 #include "analysis/observable/results.hpp"
@@ -97,12 +98,11 @@ double rest_height_of(const std::string& said, const std::vector<std::string>& r
     low = std::min(low, height);
     high = std::max(high, height);
   }
-  constexpr double kStill = 1.0 / 30;
-  if (trajectory.n_frames() == 0 || high - low > kStill)
+  if (trajectory.n_frames() == 0 || high - low > analysis::kHalfPixelOfPaper1)
     throw InputError({.file = said, .key = "--rest-height"},
                      fmt::format("is not a bed at rest: its centre of mass moves by {:.3g} sigma relative to "
                                  "the plate in {} frames; the limit is {:.3g}",
-                                 high - low, trajectory.n_frames(), kStill));
+                                 high - low, trajectory.n_frames(), analysis::kHalfPixelOfPaper1));
   return sum / static_cast<double>(trajectory.n_frames());
 }
 

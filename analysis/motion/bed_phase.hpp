@@ -9,8 +9,10 @@
 
 namespace twincell::analysis {
 
-/// Threshold of s_b above which the bed leaves the plate, sigma: half a pixel of paper 1's camera.
-inline constexpr double kBouncingThreshold = 1.0 / 30;
+/// Half a pixel of paper 1's camera, sigma: a displacement below it counts as none.
+inline constexpr double kHalfPixelOfPaper1 = 1.0 / 30;
+/// Threshold of s_b above which the bed leaves the plate, sigma.
+inline constexpr double kBouncingThreshold = kHalfPixelOfPaper1;
 /// Threshold of s_c above which the bed convects, sigma.
 inline constexpr double kConvectionThreshold = 1;
 
