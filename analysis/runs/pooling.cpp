@@ -14,6 +14,7 @@
 #include <set>
 #include <string_view>
 
+#include "analysis/neighbours/bond_order.hpp"
 #include "analysis/runs/bed_keys.hpp"
 #include "analysis/runs/phase_diagram.hpp"
 #include "analysis/statistics/statistics.hpp"
@@ -23,21 +24,18 @@
 namespace twincell::analysis {
 namespace {
 
-/// Rotation that maps a hexagonal lattice onto itself, degrees.
-constexpr double kTurn = 60;
-
-/// Circular mean with the period kTurn.
+/// Circular mean with the period of a hexagonal lattice.
 double mean_angle(const std::vector<double>& degrees) {
   std::complex<double> sum = 0;
-  for (const double a : degrees) sum += std::polar(1.0, 2 * std::numbers::pi * a / kTurn);
-  return std::arg(sum) * kTurn / (2 * std::numbers::pi);
+  for (const double a : degrees) sum += std::polar(1.0, 2 * std::numbers::pi * a / kLatticePeriodDegrees);
+  return std::arg(sum) * kLatticePeriodDegrees / (2 * std::numbers::pi);
 }
 
 /// Transforms a value to the scale in which means over runs are taken. Angles are unwrapped to the period
 /// about `centre`.
 double onto(Pooling rule, double value, double centre) {
   if (rule == Pooling::root_mean_square) return value * value;
-  return rule == Pooling::angle ? centre + std::remainder(value - centre, kTurn) : value;
+  return rule == Pooling::angle ? centre + std::remainder(value - centre, kLatticePeriodDegrees) : value;
 }
 /// Inverse of `onto`; angles stay unwrapped.
 double back(Pooling rule, double value) {
