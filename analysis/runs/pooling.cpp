@@ -20,6 +20,7 @@
 #include "analysis/statistics/statistics.hpp"
 #include "core/constants.hpp"
 #include "core/error.hpp"
+#include "trajectory/boundary_words.hpp"
 
 namespace twincell::analysis {
 namespace {
@@ -323,12 +324,7 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
       numbers("omega", p.drive->omega, q.drive->omega, kSameDrive);
       words("the drive is", p.drive->formula(), q.drive->formula());
     }
-    const auto sides = [](const TrajectoryInfo& t) {
-      return t.box.boundary[0] == Boundary::wall       ? "walls"
-             : t.box.boundary[0] == Boundary::periodic ? "periodic"
-                                                       : "open";
-    };
-    words("the sides are", sides(p), sides(q));
+    words("the sides are", sides_word(p.box.boundary[0]), sides_word(q.box.boundary[0]));
     numbers("the cell's width", p.box.size().x(), q.box.size().x(), kSameDrive);
     numbers("the number of beads", static_cast<double>(ends[0].first.n_present()),
             static_cast<double>(ends[i].first.n_present()), kSameBeads);
