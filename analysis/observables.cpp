@@ -167,19 +167,11 @@ Result array_of(const std::vector<double>& values, Result r, const std::string& 
 }
 
 SbForm s_b_named(const std::string& name) {
-  if (name == "variance") return SbForm::variance;
-  if (name == "about_rest") return SbForm::about_rest;
-  if (name == "as_printed") return SbForm::as_printed;
-  throw ConfigError({.file = {}, .key = "s_b"},
-                    fmt::format("\"{}\" is not one of variance, about_rest, as_printed", name));
+  return row_named(kSbForms, name, "s_b", "form of s_b").value;
 }
 
 NeighbourRule neighbour_rule_named(const std::string& name) {
-  if (name == "cutoff") return NeighbourRule::cutoff;
-  if (name == "delaunay") return NeighbourRule::delaunay;
-  if (name == "voronoi") return NeighbourRule::voronoi;
-  throw ConfigError({.file = {}, .key = "neighbours"},
-                    fmt::format("\"{}\" is not one of cutoff, delaunay, voronoi", name));
+  return row_named(kNeighbourRules, name, "neighbours", "rule for neighbours").value;
 }
 
 std::string neighbour_rule_text(const AnalysisContext& context) {

@@ -21,7 +21,7 @@
 
 #include "core/error.hpp"
 #include "sim/run/make_solver.hpp"
-#include "sim/scene/plan.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/scene/starts.hpp"

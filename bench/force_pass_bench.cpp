@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "sim/start/start.hpp"
 

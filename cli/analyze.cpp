@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "analysis/motion/bed_phase.hpp"
 #include "analysis/motion/centre_of_mass.hpp"
 #include "analysis/observable/observable.hpp"
 #include "analysis/observable/results.hpp"
@@ -97,12 +98,11 @@ double rest_height_of(const std::string& said, const std::vector<std::string>& r
     low = std::min(low, height);
     high = std::max(high, height);
   }
-  constexpr double kStill = 1.0 / 30;
-  if (trajectory.n_frames() == 0 || high - low > kStill)
+  if (trajectory.n_frames() == 0 || high - low > analysis::kHalfPixelOfPaper1)
     throw InputError({.file = said, .key = "--rest-height"},
                      fmt::format("is not a bed at rest: its centre of mass moves by {:.3g} sigma relative to "
                                  "the plate in {} frames; the limit is {:.3g}",
-                                 high - low, trajectory.n_frames(), kStill));
+                                 high - low, trajectory.n_frames(), analysis::kHalfPixelOfPaper1));
   return sum / static_cast<double>(trajectory.n_frames());
 }
 
@@ -327,17 +327,17 @@ void add_analyze(CLI::App& program, Common& common) {
       ->delimiter(',')
       ->type_name("LOW,HIGH");
   verb.add_option("--s-b", options->s_b,
-                  "Form of eq. B4 (Fortini & Huang 2015) for s_b: variance (standard deviation over the "
-                  "phases), about_rest (rms about the height at rest) or as_printed (rms of the height)")
-      ->check(CLI::IsMember({"variance", "about_rest", "as_printed"}))
+                  "Form of eq. B4 (Fortini & Huang 2015) for s_b. " + help_of(analysis::kSbForms))
+      ->check(CLI::IsMember(words_of(analysis::kSbForms)))
       ->capture_default_str();
   verb.add_option("--only", options->analysis.only,
                   "Names of the results to compute, comma separated; default: all")
       ->delimiter(',')
       ->type_name(kWord);
   verb.add_option("--neighbours", options->neighbours,
-                  "Definition of neighbours for q6, psi6, psi4, orientation and grains")
-      ->check(CLI::IsMember({"cutoff", "delaunay", "voronoi"}))
+                  "Definition of neighbours for q6, psi6, psi4, orientation and grains. " +
+                      help_of(analysis::kNeighbourRules))
+      ->check(CLI::IsMember(words_of(analysis::kNeighbourRules)))
       ->capture_default_str();
   verb.add_option("--cell-radius", options->analysis.cell_radius,
                   "Largest distance from a bead that belongs to its Voronoi cell, sigma; points farther from "

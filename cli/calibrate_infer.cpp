@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "analysis/motion/phase_thresholds.hpp"
+#include "analysis/motion/bed_phase.hpp"
 #include "analysis/observable/no_such_result.hpp"
 #include "analysis/observable/observable.hpp"
 #include "analysis/statistics/statistics.hpp"

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "analysis/observable/observable.hpp"
 #include "analysis/report/report.hpp"
 #include "core/error.hpp"
 
@@ -13,9 +14,8 @@ void add_comparing_flags(CLI::App& verb, ComparingFlags& flags) {
                   "Number of cycles skipped at the start of each trajectory")
       ->capture_default_str();
   verb.add_option("--s-b", flags.s_b,
-                  "Form of eq. B4 (Fortini & Huang 2015) for s_b: variance (standard deviation over the "
-                  "phases), about_rest (rms about the height at rest) or as_printed (rms of the height)")
-      ->check(CLI::IsMember({"variance", "about_rest", "as_printed"}))
+                  "Form of eq. B4 (Fortini & Huang 2015) for s_b. " + help_of(analysis::kSbForms))
+      ->check(CLI::IsMember(words_of(analysis::kSbForms)))
       ->capture_default_str();
   verb.add_option("--cutoff", flags.neighbour_cutoff,
                   "Largest distance between neighbours, sigma; default: 1.2, for experiments 1.3");

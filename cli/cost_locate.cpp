@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "analysis/motion/bed_phase.hpp"
 #include "analysis/report/colours.hpp"
 #include "analysis/report/figure_style.hpp"
 #include "imaging/benchmark/locating_cost.hpp"
@@ -121,7 +122,7 @@ nlohmann::json as_json(const MeasuredLocating& m) {
                         {"height_beads", m.scene.height},
                         {"frames", m.scene.frames}}},
                       {"accuracy_px", m.accuracy},
-                      {"s_b_threshold", 1.0 / 30},
+                      {"s_b_threshold", analysis::kBouncingThreshold},
                       {"tracers", kTracers},
                       {"phases", kPhases}};
   for (const imaging::LocatePrecision& p : m.all) d["settings"].push_back(as_json(p));

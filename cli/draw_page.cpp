@@ -15,6 +15,7 @@
 #include "core/error.hpp"
 #include "core/escape.hpp"
 #include "imaging/camera/movie.hpp"
+#include "trajectory/boundary_words.hpp"
 
 namespace twincell::cli {
 
@@ -157,10 +158,6 @@ class ContactLevels {
   VectorLevels lines_;
   Levels force_;
 };
-
-const char* boundary_word(Boundary b) {
-  return b == Boundary::periodic ? "periodic" : b == Boundary::wall ? "wall" : "open";
-}
 
 json box_json(const Box& box) {
   json boundary = json::array();

@@ -10,6 +10,7 @@
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
 #include "core/json_text.hpp"
+#include "trajectory/boundary_words.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 #include "trajectory/time_unit.hpp"
 
@@ -20,10 +21,6 @@ namespace {
 struct InfoOptions {
   std::string file;
 };
-
-std::string boundary_word(Boundary b) {
-  return b == Boundary::wall ? "walls" : b == Boundary::periodic ? "periodic" : "open";
-}
 
 nlohmann::json describe(const H5mdReader& file) {
   const TrajectoryInfo& t = file.info();
@@ -46,11 +43,11 @@ nlohmann::json describe(const H5mdReader& file) {
   column(!t.mass.empty(), "mass");
   column(!t.tracer.empty(), "tracer");
   const Vec3 size = t.box.size();
-  d["box"] = {{"dimension", t.box.dimension},
-              {"size", {size.x(), size.y(), size.z()}},
-              {"boundary",
-               {boundary_word(t.box.boundary[0]), boundary_word(t.box.boundary[1]),
-                boundary_word(t.box.boundary[2])}}};
+  d["box"] = {
+      {"dimension", t.box.dimension},
+      {"size", {size.x(), size.y(), size.z()}},
+      {"boundary",
+       {sides_word(t.box.boundary[0]), sides_word(t.box.boundary[1]), sides_word(t.box.boundary[2])}}};
   if (t.box.side_tilt != std::array<double, 2>{}) d["box"]["side_tilt"] = t.box.side_tilt;
   if (t.drive)
     d["drive"] = {{"amplitude", t.drive->amplitude},

@@ -22,6 +22,7 @@
 #include "sim/accuracy/step_error.hpp"
 #include "sim/run/checkpoint_folder.hpp"
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "trajectory/formats/h5md_file.hpp"

@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "python/trajectory.hpp"
 #include "sim/accuracy/plan_json.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/presets.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "sim/scene/resource_demand.hpp"

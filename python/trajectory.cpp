@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "core/error.hpp"
+#include "trajectory/boundary_words.hpp"
 #include "trajectory/box.hpp"
 #include "trajectory/ranges.hpp"
 #include "trajectory/wrapped_positions.hpp"
@@ -122,15 +123,15 @@ py::object of_slots(const std::shared_ptr<Trajectory>& trajectory, const std::ve
   return view(values.data(), {static_cast<py::ssize_t>(values.size())}, {sizeof(T)}, trajectory);
 }
 
-const char* word_of(Boundary b) {
-  return b == Boundary::open ? "open" : b == Boundary::wall ? "wall" : "periodic";
-}
-
 Boundary boundary_named(const std::string& word) {
-  for (const Boundary b : {Boundary::open, Boundary::wall, Boundary::periodic})
-    if (word == word_of(b)) return b;
+  for (const BoundaryWords& row : kBoundaries)
+    if (word == row.word) return row.value;
   throw ConfigError({.file = {}, .key = "boundary"},
                     fmt::format("'{}' is none of open, wall, periodic.", word));
+}
+
+std::array<std::string, 3> boundary_words(const Box& box) {
+  return {boundary_word(box.boundary[0]), boundary_word(box.boundary[1]), boundary_word(box.boundary[2])};
 }
 
 void bind_box(py::module_& module) {
@@ -172,17 +173,13 @@ void bind_box(py::module_& module) {
       .def_readonly("dimension", &Box::dimension, header_text("trajectory/box.hpp", "Box::dimension"))
       .def_readonly("side_tilt", &Box::side_tilt, header_text("trajectory/box.hpp", "Box::side_tilt"))
       .def_property_readonly(
-          "boundary",
-          [](const Box& b) {
-            return std::array<std::string, 3>{word_of(b.boundary[0]), word_of(b.boundary[1]),
-                                              word_of(b.boundary[2])};
-          },
+          "boundary", [](const Box& b) { return boundary_words(b); },
           header_text("trajectory/box.hpp", "Boundary"))
       .def("__repr__", [](const Box& b) {
         return fmt::format("Box(({:g}, {:g}, {:g}), ({:g}, {:g}, {:g}), ({}, {}, {}), dimension={})",
                            b.lower.x(), b.lower.y(), b.lower.z(), b.upper.x(), b.upper.y(), b.upper.z(),
-                           word_of(b.boundary[0]), word_of(b.boundary[1]), word_of(b.boundary[2]),
-                           b.dimension);
+                           boundary_word(b.boundary[0]), boundary_word(b.boundary[1]),
+                           boundary_word(b.boundary[2]), b.dimension);
       });
   py::class_<Drive>(module, "Drive", header_text("trajectory/drive.hpp", "Drive"))
       .def(py::init(

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "analysis/motion/phase_thresholds.hpp"
+#include "analysis/motion/bed_phase.hpp"
 #include "analysis/observable/observable.hpp"
 #include "analysis/report/colours.hpp"
 #include "analysis/report/figure_style.hpp"
@@ -20,6 +20,7 @@
 #include "sim/accuracy/work_precision.hpp"
 #include "sim/laws/linear_collision.hpp"
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "sim/scene/scene.hpp"
 

@@ -7,7 +7,7 @@
 #include <charconv>
 #include <set>
 
-#include "analysis/motion/phase_thresholds.hpp"
+#include "analysis/motion/bed_phase.hpp"
 #include "analysis/observable/observable.hpp"
 #include "core/atomic_file.hpp"
 #include "core/cancellation.hpp"
@@ -15,7 +15,7 @@
 #include "core/key_record.hpp"
 #include "core/sha256.hpp"
 #include "core/toml_leaves.hpp"
-#include "sim/scene/plan.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "sim/scene/scene.hpp"

@@ -11,7 +11,7 @@
 #include <optional>
 #include <set>
 
-#include "analysis/motion/phase_thresholds.hpp"
+#include "analysis/motion/bed_phase.hpp"
 #include "analysis/report/colours.hpp"
 #include "analysis/report/figure_style.hpp"
 #include "analysis/report/gnuplot_text.hpp"

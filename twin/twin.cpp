@@ -21,6 +21,7 @@
 #include "sim/run/make_solver.hpp"
 #include "sim/run/simulation.hpp"
 #include "sim/scene/read_scene.hpp"
+#include "trajectory/boundary_words.hpp"
 #include "trajectory/calibration_file.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 #include "trajectory/unit_keys.hpp"
@@ -73,9 +74,8 @@ void require_known(const imaging::CellDescription& cell, const fs::path& file) {
   need(cell.width.has_value(), "cell.width", "to place the side walls");
 }
 
-const char* word_of_sides(const imaging::CellDescription& cell, const fs::path& file) {
-  if (cell.sides == Boundary::periodic) return "periodic";
-  if (cell.sides == Boundary::wall) return "walls";
+std::string word_of_sides(const imaging::CellDescription& cell, const fs::path& file) {
+  if (cell.sides != Boundary::open) return sides_word(cell.sides);
   throw ConfigError({.file = file.string(), .key = "cell.sides"},
                     "\"open\" sides cannot be simulated: beads would leave; use \"walls\" or \"periodic\".");
 }

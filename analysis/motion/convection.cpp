@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/motion/bed_phase.hpp"
 #include "analysis/motion/rolls.hpp"
 #include "core/constants.hpp"
 
@@ -19,9 +20,9 @@ constexpr NamedResult kResults[] = {
 constexpr std::size_t kMostRows = 4096;  // bounds the table: a bead that is thrown far up must not enlarge it
 constexpr std::size_t kMostBlocks = 20;
 constexpr std::size_t kFewestBlocks = 4;
-/// Minimum transport of a roll over the whole run across the side of a cell, sigma: half a pixel of paper 1's
-/// camera. Weaker transport is the creep of a bed that yields elastically.
-constexpr double kLeastCarried = 1.0 / 30;
+/// Minimum transport of a roll over the whole run across the side of a cell, sigma. Weaker transport is the
+/// creep of a bed that yields elastically.
+constexpr double kLeastCarried = kHalfPixelOfPaper1;
 const char* const kSource = "Fortini & Huang 2015, sec. V";
 
 /// Sums of displacements per cell.

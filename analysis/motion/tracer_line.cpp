@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "analysis/motion/bed_phase.hpp"
 #include "core/constants.hpp"
 #include "core/counted.hpp"
 
@@ -134,7 +135,7 @@ DriftVerdict judge_drift(const TracerLine& line, double noise) {
     return verdict;
   }
   verdict.late = growth(line, middle, line.n());
-  const double least = std::max(1.0 / 30, 3 * std::sqrt(2.0) * noise);
+  const double least = std::max(kHalfPixelOfPaper1, 3 * std::sqrt(2.0) * noise);
   const bool grows = verdict.late.interval && verdict.late.interval->low > 0;
   std::string because;
   if (early < least && late < least) {

@@ -60,11 +60,11 @@ BondOrder bond_order(const Neighbours& neighbours, const std::vector<double>& we
 
 double lattice_angle(double real, double imaginary) {
   const double degrees = std::atan2(imaginary, real) / 6 * 180 / std::numbers::pi;
-  return degrees < -15 ? degrees + 60 : degrees;
+  return degrees < -15 ? degrees + kLatticePeriodDegrees : degrees;
 }
 
 double misorientation(double angle, double other) {
-  return std::abs(std::remainder(angle - other, 60));
+  return std::abs(std::remainder(angle - other, kLatticePeriodDegrees));
 }
 
 Structure structure_of(const BondOrder& order, std::size_t bead) {

@@ -8,6 +8,11 @@
 
 namespace twincell::analysis {
 
+/// A bead whose psi6 is larger than this is ordered (Fortini & Huang 2015, Fig. 1: "hexagonally ordered").
+inline constexpr double kOrdered = 0.9;
+/// The directions of a hexagonal lattice repeat after this angle, degrees.
+inline constexpr double kLatticePeriodDegrees = 60;
+
 /// Bond order of every bead. NaN where undefined.
 struct BondOrder {
   std::vector<double> q6;            ///< [n_beads]

@@ -20,6 +20,7 @@
 #include "analysis/neighbours/neighbours.hpp"
 #include "analysis/neighbours/voronoi.hpp"
 #include "analysis/statistics/statistics.hpp"
+#include "core/choice.hpp"
 #include "core/progress.hpp"
 #include "trajectory/trajectory.hpp"
 
@@ -56,8 +57,13 @@ Result mean_of(const SeriesAverage& series, Result r, const std::string& why_abs
 /// `why_absent` if no value is finite.
 Result array_of(const std::vector<double>& values, Result r, const std::string& why_absent);
 
-/// Readings of eq. B4 (s_b_of in phase_thresholds.hpp).
+/// Readings of eq. B4 (s_b_of in bouncing.hpp).
 enum class SbForm { variance, about_rest, as_printed };
+/// All forms with their words.
+inline constexpr std::array kSbForms = {
+    Choice<SbForm>{SbForm::variance, "variance", "standard deviation over the phases"},
+    Choice<SbForm>{SbForm::about_rest, "about_rest", "rms about the height at rest"},
+    Choice<SbForm>{SbForm::as_printed, "as_printed", "rms of the height"}};
 /// The form with this name. \throws ConfigError for an unknown name
 SbForm s_b_named(const std::string& name);
 
@@ -67,6 +73,12 @@ enum class NeighbourRule {
   delaunay,  ///< beads whose Voronoi cells share an edge (voronoi.hpp)
   voronoi,   ///< the same, each bond weighted by the length of that edge
 };
+/// All rules with their words.
+inline constexpr std::array kNeighbourRules = {
+    Choice<NeighbourRule>{NeighbourRule::cutoff, "cutoff", "beads whose centres are within the cutoff"},
+    Choice<NeighbourRule>{NeighbourRule::delaunay, "delaunay", "beads whose Voronoi cells share an edge"},
+    Choice<NeighbourRule>{NeighbourRule::voronoi, "voronoi",
+                          "the same, each bond weighted by the length of that edge"}};
 /// The rule with this name. \throws ConfigError for an unknown name
 NeighbourRule neighbour_rule_named(const std::string& name);
 

@@ -102,7 +102,7 @@ class GrainsObservable : public Observable {
         "grain: at least {} beads joined by Voronoi neighbours with psi6 >= {} that are turned by at most {} "
         "degrees, and the beads between grains, which join the grain with which they share the "
         "greatest edge length; {}",
-        kGrainBeads, kGrainOrder, kGrainTurn, rule_);
+        kGrainBeads, kOrdered, kGrainTurn, rule_);
     const auto mean = [&](const char* name, const SeriesAverage& series, const char* unit,
                           const std::string& of, const std::string& absent) {
       return mean_of(series,
@@ -140,7 +140,7 @@ class GrainsObservable : public Observable {
 
 Grains find_grains(const BondOrder& order, const VoronoiCells& cells, bool fill) {
   const std::size_t n = order.psi6.size();
-  const auto ordered = [&](std::size_t i) { return order.psi6[i] >= kGrainOrder; };  // false for NaN
+  const auto ordered = [&](std::size_t i) { return order.psi6[i] >= kOrdered; };  // false for NaN
   // Groups of ordered neighbours with similar lattice directions.
   Groups groups(n);
   for (std::size_t i = 0; i < n; ++i)

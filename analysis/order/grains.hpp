@@ -10,7 +10,6 @@
 
 namespace twincell::analysis {
 
-inline constexpr double kGrainOrder = 0.9;     ///< minimum psi6 of a bead in the core of a grain
 inline constexpr double kGrainTurn = 5;        ///< degrees; largest misorientation of neighbours in one grain
 inline constexpr std::size_t kGrainBeads = 7;  ///< minimum number of beads: one bead and its six neighbours
 
@@ -23,7 +22,7 @@ struct Grains {
 };
 
 /// Finds the grains. Neighbours (beads whose Voronoi cells share an edge) belong to one grain if both have
-/// psi6 >= kGrainOrder and their lattice directions differ by at most kGrainTurn. Groups of fewer than
+/// psi6 >= kOrdered and their lattice directions differ by at most kGrainTurn. Groups of fewer than
 /// kGrainBeads beads are not grains. With `fill`, the remaining beads then join, layer by layer, the grain
 /// with which they share the greatest total edge length. Grains then touch, and a boundary is a line without
 /// a disordered layer between the grains.

@@ -17,9 +17,6 @@ constexpr NamedResult kResults[] = {{"ordered_fraction"},
 
 const char* const kSource = "Fortini & Huang 2015, Fig. 2";
 
-/// Rotation that maps a hexagonal lattice onto itself, degrees.
-constexpr double kTurn = 60;
-
 /// The tolerance includes a lattice rotated by exactly the width despite rounding.
 bool within_width(double angle, double other) {
   return misorientation(angle, other) <= kOrientationWidth + 1e-9;
@@ -55,7 +52,7 @@ class Orientation : public Observable {
     // mean would be wrong. Each angle is therefore unwrapped to the value nearest the first.
     const double angle = lattice_angle(sum.real(), sum.imag());
     if (angle_.n() == 0) first_ = angle;
-    angle_.add(first_ + std::remainder(angle - first_, kTurn));
+    angle_.add(first_ + std::remainder(angle - first_, kLatticePeriodDegrees));
     a_.add(share(a, ordered));
     b_.add(share(b, ordered));
   }
@@ -100,7 +97,8 @@ class Orientation : public Observable {
   /// Maps a mean angle, and its interval with it, back to the range -15 … 45.
   static Result back(Result angle) {
     if (!angle.present()) return angle;
-    const double turns = kTurn * std::floor((angle.value() + kTurn / 4) / kTurn);
+    const double turns = kLatticePeriodDegrees *
+                         std::floor((angle.value() + kLatticePeriodDegrees / 4) / kLatticePeriodDegrees);
     angle.values[0] -= turns;
     if (angle.interval) {
       angle.interval->low -= turns;

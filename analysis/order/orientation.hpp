@@ -6,8 +6,6 @@
 
 namespace twincell::analysis {
 
-/// A bead is ordered if its psi6 is larger than this (Fortini & Huang 2015, Fig. 1: "hexagonally ordered").
-inline constexpr double kOrdered = 0.9;
 /// A bead has orientation A or B if its lattice_angle is within this many degrees of 0 or 30. For random
 /// lattice directions one third is A, one third B, and one third neither.
 inline constexpr double kOrientationWidth = 10;

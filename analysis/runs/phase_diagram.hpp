@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/motion/phase_thresholds.hpp"
+#include "analysis/motion/bed_phase.hpp"
 #include "analysis/motion/snapshots.hpp"
 #include "analysis/observable/observable.hpp"
 #include "analysis/order/order.hpp"

@@ -14,30 +14,29 @@
 #include <set>
 #include <string_view>
 
+#include "analysis/neighbours/bond_order.hpp"
 #include "analysis/runs/bed_keys.hpp"
 #include "analysis/runs/phase_diagram.hpp"
 #include "analysis/statistics/statistics.hpp"
 #include "core/constants.hpp"
 #include "core/error.hpp"
+#include "trajectory/boundary_words.hpp"
 
 namespace twincell::analysis {
 namespace {
 
-/// Rotation that maps a hexagonal lattice onto itself, degrees.
-constexpr double kTurn = 60;
-
-/// Circular mean with the period kTurn.
+/// Circular mean with the period of a hexagonal lattice.
 double mean_angle(const std::vector<double>& degrees) {
   std::complex<double> sum = 0;
-  for (const double a : degrees) sum += std::polar(1.0, 2 * std::numbers::pi * a / kTurn);
-  return std::arg(sum) * kTurn / (2 * std::numbers::pi);
+  for (const double a : degrees) sum += std::polar(1.0, 2 * std::numbers::pi * a / kLatticePeriodDegrees);
+  return std::arg(sum) * kLatticePeriodDegrees / (2 * std::numbers::pi);
 }
 
 /// Transforms a value to the scale in which means over runs are taken. Angles are unwrapped to the period
 /// about `centre`.
 double onto(Pooling rule, double value, double centre) {
   if (rule == Pooling::root_mean_square) return value * value;
-  return rule == Pooling::angle ? centre + std::remainder(value - centre, kTurn) : value;
+  return rule == Pooling::angle ? centre + std::remainder(value - centre, kLatticePeriodDegrees) : value;
 }
 /// Inverse of `onto`; angles stay unwrapped.
 double back(Pooling rule, double value) {
@@ -325,12 +324,7 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
       numbers("omega", p.drive->omega, q.drive->omega, kSameDrive);
       words("the drive is", p.drive->formula(), q.drive->formula());
     }
-    const auto sides = [](const TrajectoryInfo& t) {
-      return t.box.boundary[0] == Boundary::wall       ? "walls"
-             : t.box.boundary[0] == Boundary::periodic ? "periodic"
-                                                       : "open";
-    };
-    words("the sides are", sides(p), sides(q));
+    words("the sides are", sides_word(p.box.boundary[0]), sides_word(q.box.boundary[0]));
     numbers("the cell's width", p.box.size().x(), q.box.size().x(), kSameDrive);
     numbers("the number of beads", static_cast<double>(ends[0].first.n_present()),
             static_cast<double>(ends[i].first.n_present()), kSameBeads);

@@ -47,8 +47,7 @@ double correlation_time(const std::vector<double>& series);
 ///
 /// The series is stored as at most 4096 means of equally many consecutive values (one value each for a short
 /// series). An autoregressive process takes their correlation away (prewhitening, Andrews & Monahan 1992).
-/// With its innovations e_i, i = 0 ... m - 1, and its coefficients a_k, the variance of the mean of n values
-/// is
+/// With its innovations e_i, i = 0 ... m - 1, and its coefficients a_k, the mean of n values has the variance
 ///
 ///     1/(n (1 - sum_k a_k)^2)  1/B sum_{j=1..B} c_j^2,
 ///     c_j = sqrt(2/m) sum_i e_i cos(pi j (i + 1/2)/m)

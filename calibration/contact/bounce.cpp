@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "calibration/fit/outliers.hpp"
+#include "calibration/fit/scattered_mean.hpp"
 #include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
@@ -578,23 +579,8 @@ void SeriesFit::add_impacts(BounceFit& out) const {
   add_mean(out, covariance);
 }
 
-/// Best linear unbiased mean of correlated values, its error, and chi^2 of the values about it.
-struct WeightedMean {
-  double mean = 0, error = 0, chi2 = 0;
-};
-
-WeightedMean weighted_mean(const Eigen::VectorXd& e, const Eigen::MatrixXd& covariance) {
-  const Eigen::VectorXd one = Eigen::VectorXd::Ones(e.size());
-  const auto factored = covariance.ldlt();
-  const Eigen::VectorXd w = factored.solve(one);
-  const double mean = w.dot(e) / w.dot(one);
-  const Eigen::VectorXd left = e - mean * one;
-  return {mean, 1 / std::sqrt(w.dot(one)), left.dot(factored.solve(left))};
-}
-
-// If e_n differs from impact to impact by more than its errors, it scatters by itself: the variance that
-// brings chi^2 to its expectation is added to that of each impact (Paule & Mandel 1982). A common factor,
-// which was tried, keeps the weights of the film's noise, under which one impact may count for all.
+// If e_n differs from impact to impact by clearly more than its errors, it scatters by itself
+// (scattered_mean.hpp). Otherwise the film's noise alone weights the impacts.
 void SeriesFit::add_mean(BounceFit& out, const Eigen::MatrixXd& covariance) const {
   const auto n = static_cast<Eigen::Index>(out.impacts.size());
   Eigen::VectorXd e(n);
@@ -609,12 +595,10 @@ void SeriesFit::add_mean(BounceFit& out, const Eigen::MatrixXd& covariance) cons
     const auto scattered = [&](double variance) {
       return weighted_mean(e, covariance + variance * Eigen::MatrixXd::Identity(n, n));
     };
-    double low = 0, high = (e.array() - e.mean()).square().sum() + covariance.trace();
-    for (int i = 0; i < kHalvings; ++i) {
-      const double middle = (low + high) / 2;
-      (scattered(middle).chi2 > freedom ? low : high) = middle;
-    }
-    mean = scattered(high);
+    const double most = (e.array() - e.mean()).square().sum() + covariance.trace();
+    mean = scattered(find_scatter([&](double variance) { return scattered(variance).chi2; }, freedom,
+                                  {0, most, kHalvings, false})
+                         .enough);
   }
   out.restitution = mean.mean;
   out.restitution_error = mean.error;

@@ -9,6 +9,7 @@
 
 #include "calibration/fit/curve_fit.hpp"
 #include "calibration/fit/outliers.hpp"
+#include "calibration/fit/scattered_mean.hpp"
 #include "core/constants.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
@@ -145,35 +146,24 @@ WaltonFit fit_walton(const std::vector<Impact>& impacts, double shape) {
   }
   out.impacts = kept.size();
   const auto n = static_cast<double>(kept.size());
-  // Mean of e_n: weights 1/(s^2 + error^2), with s^2 such that chi^2 equals n - 1 (Mandel & Paule 1982).
-  const auto chi = [&](double s2, double& mean, double& weight) {
-    double sum = 0;
-    weight = 0;
-    for (const Impact& i : kept) {
-      const double w = 1 / (s2 + (known ? i.restitution_error * i.restitution_error : 0));
-      sum += w * i.restitution;
-      weight += w;
-    }
-    mean = sum / weight;
-    double chi2 = 0;
-    for (const Impact& i : kept)
-      chi2 +=
-          std::pow(i.restitution - mean, 2) / (s2 + (known ? i.restitution_error * i.restitution_error : 0));
-    return chi2;
-  };
-  double mean = 0, weight = 0, s2 = 0;
-  double low = 1e-30, high = 16 * width * width + 1e-20;
-  if (known && chi(low, mean, weight) <= n - 1) {
-    s2 = low;
-  } else {
-    for (int i = 0; i < 200; ++i) {
-      s2 = std::sqrt(low * high);
-      (chi(s2, mean, weight) > n - 1 ? low : high) = s2;
-    }
+  // Mean of e_n with scatter (scattered_mean.hpp). Impacts without errors have no weight but that of their
+  // scatter, which may be of any size: s^2 is searched over decades, from nearly 0.
+  std::vector<double> restitutions, variances;
+  for (const Impact& i : kept) {
+    restitutions.push_back(i.restitution);
+    variances.push_back(known ? i.restitution_error * i.restitution_error : 0);
   }
-  chi(s2, mean, weight);
-  out.restitution = mean;
-  out.restitution_error = 1 / std::sqrt(weight);
+  constexpr double kNoScatter = 1e-30;
+  constexpr int kHalvings = 200;
+  const auto scattered = [&](double s2) { return weighted_mean(restitutions, variances, s2); };
+  const double s2 = known && scattered(kNoScatter).chi2 <= n - 1
+                        ? kNoScatter
+                        : find_scatter([&](double s) { return scattered(s).chi2; }, n - 1,
+                                       {kNoScatter, 16 * width * width + 1e-20, kHalvings, true})
+                              .tried;
+  const WeightedMean mean = scattered(s2);
+  out.restitution = mean.mean;
+  out.restitution_error = mean.error;
   out.scatter = std::sqrt(s2);
 
   // Dependence of e_n on speed.

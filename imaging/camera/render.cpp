@@ -16,6 +16,7 @@
 #include "imaging/camera/random.hpp"
 #include "imaging/camera/synthetic_camera.hpp"
 #include "imaging/codecs/codecs.hpp"
+#include "trajectory/boundary_words.hpp"
 #include "trajectory/plate.hpp"
 
 namespace twincell::imaging {
@@ -109,10 +110,7 @@ std::string cell_text(const SyntheticCamera& camera, const TrajectoryInfo& info,
   // If the file has a scale, a length without a unit is refused.
   const char* sigma = info.scale.sigma_m ? "_sigma" : "";
   text += fmt::format("\n[cell]\nwidth{0} = {1:.17g}\nheight{0} = {2:.17g}\nsides = \"{3}\"\n", sigma,
-                      info.box.size().x(), info.box.size().z(),
-                      info.box.boundary[0] == Boundary::wall ? "walls"
-                      : info.box.periodic(Axis::x)           ? "periodic"
-                                                             : "open");
+                      info.box.size().x(), info.box.size().z(), sides_word(info.box.boundary[0]));
   if (const auto [left, right] = camera.side_tilt(); left != 0 || right != 0)
     text += fmt::format("# The side walls lean outward by {} and {} degrees.\n", left, right);
   if (info.drive)

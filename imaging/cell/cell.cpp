@@ -1,8 +1,12 @@
 #include "imaging/cell/cell.hpp"
 
+#include <algorithm>
+#include <optional>
+
 #include "core/bounded_list.hpp"
 #include "core/config.hpp"
 #include "imaging/refine/refiner.hpp"
+#include "trajectory/boundary_words.hpp"
 #include "trajectory/unit_keys.hpp"
 
 namespace twincell::imaging {
@@ -20,6 +24,20 @@ PixelFrame CellDescription::pixel_frame(cv::Size picture, double scale_px, Pixel
   if (rotation_deg != 0 || distortion != 0) frame.lens = Lens(picture, rotation_deg, distortion);
   return frame;
 }
+
+namespace {
+
+std::optional<Boundary> sides_in(const ConfigSection& box) {
+  std::vector<std::string> words;
+  for (const BoundaryWords& row : kBoundaries) words.emplace_back(row.sides);
+  const auto word = box.word("sides", words);
+  if (!word) return std::nullopt;
+  return std::find_if(kBoundaries.begin(), kBoundaries.end(),
+                      [&](const BoundaryWords& row) { return *word == row.sides; })
+      ->value;
+}
+
+}  // namespace
 
 CellDescription read_cell(const std::filesystem::path& path, const std::vector<std::string>& assignments) {
   constexpr std::int64_t kMostPhases = 100000;
@@ -61,11 +79,7 @@ CellDescription read_cell(const std::filesystem::path& path, const std::vector<s
       throw ConfigError(section.where(key), "is a key of a scene; a cell description does not have it.");
   cell.width = box.number_in("width", 0, kLongest, true);
   cell.height = box.number_in("height", 0, kLongest, true);
-  if (const auto sides = box.word("sides", {"walls", "periodic", "open"}))
-    cell.sides = *sides == "walls"      ? Boundary::wall
-                 : *sides == "periodic" ? Boundary::periodic
-                                        : Boundary::open;
-
+  cell.sides = sides_in(box).value_or(cell.sides);
   if (const auto tilt = numbers_in(box, "side_tilt", 2, -45, 45)) cell.side_tilt = {(*tilt)[0], (*tilt)[1]};
 
   const ConfigSection drive = root.section("drive");

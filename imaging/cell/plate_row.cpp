@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/constants.hpp"
+#include "core/quantile.hpp"
 #include "imaging/preprocess/straight_bars.hpp"
 
 namespace twincell::imaging {
@@ -14,11 +15,8 @@ namespace {
 constexpr double kPlateAt = 0.2;  // beads hide the plate in most columns
 constexpr float kHalf = 0.5F;
 
-double quantile(std::vector<float>& values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+double value_at(const std::vector<float>& values, double share) {
+  return lower_quantile(values, share);
 }
 
 /// Values of a row as float, negated where the plate is the bright part.
@@ -43,7 +41,7 @@ double bar_height_px(const cv::Mat& grey, bool bright, double light, double dark
     }
     if (heights.size() > highest.size()) highest = std::move(heights);
   }
-  return highest.empty() ? kNaN : quantile(highest, kPlateAt);
+  return highest.empty() ? kNaN : value_at(highest, kPlateAt);
 }
 
 }  // namespace
@@ -65,8 +63,8 @@ double plate_height_px(const cv::Mat& grey, bool bright) {
     read_row(grey, y, bright, row);
     lowest.insert(lowest.end(), row.begin(), row.end());
   }
-  const double light = quantile(all, kLightAt), dark = quantile(all, 1 - kLightAt),
-               plate = quantile(lowest, 0.5);
+  const double light = value_at(all, kLightAt), dark = value_at(all, 1 - kLightAt),
+               plate = value_at(lowest, 0.5);
   if (!(light > dark)) return kNaN;
   if (!(light - plate > kLeastContrast * (light - dark))) return bar_height_px(grey, bright, light, dark);
   const auto half = static_cast<float>(0.5 * (light + plate));
@@ -91,12 +89,12 @@ double plate_height_px(const cv::Mat& grey, bool bright) {
       below[x] = v;
     }
     // The plate has been passed by the most open columns; the rest are beads and walls.
-    if (heights.size() > columns / 2 && h > 2 * quantile(heights, kPlateAt) + kBorder) break;
+    if (heights.size() > columns / 2 && h > 2 * value_at(heights, kPlateAt) + kBorder) break;
   }
   if (heights.size() < std::max(kFewest, static_cast<std::size_t>(kFewestShare * grey.cols)) ||
       no_plate > columns / 10)
     return kNaN;
-  return quantile(heights, kPlateAt);
+  return value_at(heights, kPlateAt);
 }
 
 }  // namespace twincell::imaging

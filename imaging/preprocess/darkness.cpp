@@ -7,6 +7,8 @@
 #include <numbers>
 #include <vector>
 
+#include "core/quantile.hpp"
+
 namespace twincell::imaging {
 
 namespace {
@@ -14,12 +16,6 @@ namespace {
 /// -1 to 1 over n pixels.
 double scaled(double i, int n) {
   return n > 1 ? 2.0 * i / (n - 1) - 1.0 : 0.0;
-}
-
-float quantile(std::vector<float> values, double q) {
-  const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
 }
 
 }  // namespace
@@ -74,7 +70,7 @@ Noise noise_of(const cv::Mat1f& darkness) {
   const auto variance = [&](std::vector<float>& v) {
     constexpr double kFromMedian =
         1 / (0.6745 * 0.6745 * 6);  // from the median of |second difference| to the noise
-    const auto middle = static_cast<double>(quantile(std::move(v), 0.5));
+    const auto middle = static_cast<double>(lower_quantile(std::move(v), 0.5));
     return middle * middle * kFromMedian;
   };
   if (light.size() < kEnough) return {};

@@ -153,8 +153,8 @@ bool add_out_of_frame(FrameModel& frame, bool blur_known) {
   const double blur = std::sqrt(frame.blur.variance);
   std::vector<Proposal> beyond;
   for (const Prior& s : frame.priors.radii())
-    for (Proposal p :
-         out_of_frame_discs(frame.ring_args(), s.mean, blur_known ? s.mean + blur : s.mean - blur)) {
+    for (Proposal p : out_of_frame_discs(frame.ring_args(), s.mean,
+                                         blur_known ? s.mean + blur : s.mean - blur, kMissedDarkness)) {
       p.radius = s.mean;
       beyond.push_back(p);
     }

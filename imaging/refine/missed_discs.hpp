@@ -7,7 +7,8 @@
 
 namespace twincell::imaging {
 
-/// Smallest mean residual of a disc that was not proposed; half that of usual tracers.
+/// Smallest darkness, in the residual picture, of a disc that was not proposed, inside the frame or beyond
+/// its border: half that of usual tracers, because its neighbours have absorbed a part.
 inline constexpr double kMissedDarkness = 0.35;
 
 /// Adds discs inside the frame that were not proposed. Such a disc leaves a dark disc in the residual

@@ -21,6 +21,8 @@ namespace twincell::imaging {
 /// \param radius_px radius of the discs
 /// \param deepest_px largest distance of a centre from the border. Of a disc farther out only the blur would
 ///     be seen
-std::vector<Proposal> out_of_frame_discs(const RingArgs& args, double radius_px, double deepest_px);
+/// \param least_darkness smallest fitted darkness of a disc
+std::vector<Proposal> out_of_frame_discs(const RingArgs& args, double radius_px, double deepest_px,
+                                         double least_darkness);
 
 }  // namespace twincell::imaging

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/quantile.hpp"
 #include "imaging/refine/picture_evidence.hpp"
 #include "imaging/refine/rim_samples.hpp"
 
@@ -60,13 +61,6 @@ void subtract_common(std::vector<Rim>& rims, Function&& of) {
       rim.rest.row(static_cast<Eigen::Index>(k)) -= of(rim.turns[k]) / squares * sum;
 }
 
-/// The value below which a share of the values lies.
-double quantile(std::vector<double> values, double share) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 }  // namespace
 
 double rim_variation(const cv::Mat& grey, const std::vector<Detection>& discs,
@@ -101,7 +95,7 @@ double rim_variation(const cv::Mat& grey, const std::vector<Detection>& discs,
   const double share = radii_px.size() > 1 ? 0.5 : 0.25;
   double largest = 0;
   for (std::vector<double>& of_size : variations)
-    if (!of_size.empty()) largest = std::max(largest, quantile(std::move(of_size), share));
+    if (!of_size.empty()) largest = std::max(largest, upper_quantile(std::move(of_size), share));
   return largest;
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/json_text.hpp"
 #include "sim/accuracy/step_error.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "sim/scene/starts.hpp"
 #include "sim/start/start.hpp"

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/make_plan.hpp"
 
 namespace twincell::sim {
 

@@ -355,9 +355,14 @@ bool visit_history(const ContactLaws& laws, Visit visit) {
 }  // namespace
 
 SlipReading reading_of(const ContactLaws& laws) {
-  return std::holds_alternative<SpringLimitedSlider>(laws.tangential)  ? SlipReading::spring_limited
-         : std::holds_alternative<ForceClippedSlider>(laws.tangential) ? SlipReading::clip
-                                                                       : SlipReading::rescale;
+  return std::visit(
+      []<class Law>(const Law&) {
+        if constexpr (requires { Law::kReading; })
+          return Law::kReading;
+        else
+          return SlipReading::rescale;  // a law without a spring of constant stiffness: remembers() is false
+      },
+      laws.tangential);
 }
 
 CollisionEnd integrate_collision_with_memory(const CollisionSetting& setting, const RelativeMotion& motion,

@@ -8,14 +8,6 @@
 
 namespace twincell::sim {
 
-/// State of the spring while the surfaces slide, that is, where spring and dashpot together would exceed the
-/// Coulomb limit mu |F_n|. The paper only says "truncate".
-enum class SlipReading {
-  rescale,  ///< spring shortened so that spring and dashpot together equal the limit (SpringSlider; LAMMPS)
-  spring_limited,  ///< spring alone kept at the limit, without the dashpot (SpringLimitedSlider)
-  clip,            ///< only the force is cut; the spring continues to stretch (ForceClippedSlider)
-};
-
 /// The reading that the tangential law uses. Requires remembers(laws).
 SlipReading reading_of(const ContactLaws& laws);
 

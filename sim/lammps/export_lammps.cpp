@@ -14,7 +14,7 @@
 
 #include "core/provenance.hpp"
 #include "sim/run/simulation.hpp"
-#include "sim/scene/plan.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/plate_motion.hpp"
 
 namespace twincell::sim {

@@ -38,6 +38,20 @@ bool has_history(const std::string& tangential) {
   return history;
 }
 
+bool tangential_reads(const std::string& tangential, const std::string& key) {
+  const std::vector<std::string> readers = readers_of(key).laws;
+  return std::find(readers.begin(), readers.end(), tangential) != readers.end();
+}
+
+std::string law_without_history(const std::string& tangential) {
+  std::string word = tangential;
+  for_each_law(TangentialAxis{}, [&]<class Law>(const Law&) {
+    if constexpr (Law::kHistory)
+      if (tangential == Law::kWord) word = Law::kWithoutHistory;
+  });
+  return word;
+}
+
 void check_laws(const std::string& normal, const std::string& tangential, const std::string& rolling,
                 const ContactTable& table) {
   static_cast<void>(read_law<NormalAxis>(normal, table));

@@ -3,7 +3,8 @@
 /// The lists of contact laws, one per axis (normal, tangential, rolling): the only place that names all laws.
 /// To add a law, write a file with a struct that satisfies the concept of its axis (concepts.hpp), add its
 /// type to the list here, and write a verification test. Scenes select the law by its kWord, kernels are
-/// compiled for it, and `explain` lists it.
+/// compiled for it, the plan derives its effects from it, and `explain` lists it. Only device_laws.hpp and
+/// export_lammps.cpp select from these laws, because a device and LAMMPS support some of them.
 
 #include <variant>
 
@@ -55,6 +56,12 @@ Axis read_law(const std::string& word, const ContactTable& table) {
   }
 }
 
+/// The name of a law, for texts.
+template <class Axis>
+std::string law_name(const Axis& axis) {
+  return std::visit([](const auto& law) { return std::string(law.kName); }, axis);
+}
+
 /// Checks that a table contains valid parameters for the named laws.
 /// \throws ConfigError
 void check_laws(const std::string& normal, const std::string& tangential, const std::string& rolling,
@@ -66,6 +73,11 @@ std::vector<std::string> tangential_words();
 std::vector<std::string> rolling_words();
 /// Whether the named tangential law has a spring with history.
 bool has_history(const std::string& tangential);
+/// Whether the named tangential law reads a key.
+bool tangential_reads(const std::string& tangential, const std::string& key);
+/// The word of the law to choose instead of the named tangential law for a force without history; the law
+/// itself if it has none.
+std::string law_without_history(const std::string& tangential);
 /// The keys that the named laws read.
 std::vector<std::string> keys_of(const std::string& normal, const std::string& tangential,
                                  const std::string& rolling);

@@ -42,10 +42,35 @@ concept NormalLaw = ContactLaw<Law> &&
   { law.largest_force(x) } -> std::same_as<double>;  // at an overlap; sets the rounding quantum of force sums
 };
 
-/// A tangential law whose force also takes the overlap, as its last argument: kReadsOverlap = true.
+/// A normal law that omits the attraction at the end of a contact: kOmitsTension = true. It gives the
+/// collision as it is, and as it would be with the attraction.
 template <class Law>
-concept ReadsOverlap = requires {
+concept OmitsTension = requires(const Law law, const PairScale& pair) {
+  requires Law::kOmitsTension;
+  { law.collision(pair).restitution } -> std::convertible_to<double>;
+  { law.collision_with_tension(pair).restitution } -> std::convertible_to<double>;
+};
+
+/// A tangential law whose force also takes the overlap, as its last argument: kReadsOverlap = true. Its
+/// stiffness, and with it the shortest time, depends on the overlap.
+template <class Law>
+concept ReadsOverlap = requires(const Law law, const PairScale& pair, double overlap) {
   requires Law::kReadsOverlap;
+  { law.shortest_time(pair, overlap) } -> std::same_as<double>;  // t0
+};
+
+/// A tangential law with history names the law without history to choose instead. With a stiffness k_t = 0
+/// the two exert the same force.
+template <class Law>
+concept NamesLawWithoutHistory = !Law::kHistory || requires {
+  { Law::kWithoutHistory } -> std::convertible_to<std::string_view>;
+};
+
+/// A tangential law that exerts no force with some of its parameters, although friction is not 0.
+/// why_no_force() says which; it is empty if the law exerts one.
+template <class Law>
+concept MayExertNoForce = requires(const Law law) {
+  { law.why_no_force() } -> std::convertible_to<std::string_view>;
 };
 
 /// Evaluates a tangential law: force from (constants, v_t, F_n, dt, xi), and from the overlap if the law
@@ -61,8 +86,9 @@ template <class Law, class V, class T, class X>
 
 /// Tangential force. kActs: beads rotate. kHistory: the contact remembers xi.
 template <class Law>
-concept TangentialLaw = ContactLaw<Law> && requires(const Law law, const PairScale& pair, const float* c,
-                                                    float x, Tangent<float, 3> t, Tangent<float, 3> kept) {
+concept TangentialLaw = ContactLaw<Law> && NamesLawWithoutHistory<Law> &&
+    requires(const Law law, const PairScale& pair, const float* c, float x, Tangent<float, 3> t,
+             Tangent<float, 3> kept) {
   { Law::kActs } -> std::convertible_to<bool>;
   { Law::kHistory } -> std::convertible_to<bool>;
   { tangential_force<Law>(c, t, x, x, kept, x) } -> std::same_as<Tangent<float, 3>>;

@@ -5,6 +5,15 @@
 
 namespace twincell::sim {
 
+PairScale equal_beads(double radius, double mass, double inertia_factor) {
+  const double one = 1 / mass + 1 / (inertia_factor * mass);  // 1/m + R^2/I
+  return {mass / 2, radius / 2, 2 * one};
+}
+
+PairScale bead_and_wall(double radius, double mass, double inertia_factor) {
+  return {mass, radius, 1 / mass + 1 / (inertia_factor * mass)};
+}
+
 const std::vector<std::string>& normal_damping_keys() {
   static const std::vector<std::string> keys = {"gamma_n", "c_n", "restitution"};
   return keys;
@@ -59,6 +68,14 @@ Where ContactTable::where(const std::string& key) const {
   for (const ConfigSection& t : tables_)
     if (t.has(key)) return t.where(key);
   return tables_.empty() ? Where{} : tables_.back().where(key);
+}
+
+double read_friction(const ContactTable& table) {
+  return table.number("mu", 0, 1e12).value_or(0.6);
+}
+
+double read_tangential_stiffness(const ContactTable& table) {
+  return table.number("k_t", 0, 1e12).value_or(1e4);
 }
 
 }  // namespace twincell::sim

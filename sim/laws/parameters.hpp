@@ -19,6 +19,10 @@ struct PairScale {
   double inv_m_t;  ///< 1/m_t = 1/m_i + 1/m_j + R_i^2/I_i + R_j^2/I_j; at a wall, the terms of the bead only
 };
 
+/// Scale of a contact of two equal beads, and of a bead and a wall. `inertia_factor` is I/(m R^2).
+PairScale equal_beads(double radius, double mass, double inertia_factor);
+PairScale bead_and_wall(double radius, double mass, double inertia_factor);
+
 /// Mutually exclusive keys: at most one per table. A key of an inner table overrides any key of its group in
 /// an outer table, and a key of the scene overrides one of the preset.
 const std::vector<std::string>& normal_damping_keys();
@@ -53,5 +57,10 @@ class ContactTable {
  private:
   std::vector<ConfigSection> tables_;
 };
+
+/// Reads the friction coefficient `mu`, default 0.6.
+double read_friction(const ContactTable& table);
+/// Reads the stiffness of a tangential spring `k_t`, m g/sigma, default 1e4.
+double read_tangential_stiffness(const ContactTable& table);
 
 }  // namespace twincell::sim

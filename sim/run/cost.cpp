@@ -9,6 +9,7 @@
 #include "sim/run/driven_work.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/run/simulation.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/starts.hpp"
 
 namespace twincell::sim {

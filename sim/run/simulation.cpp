@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "sim/run/contact_forces.hpp"
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/plate_motion.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "sim/system/cell_grid.hpp"

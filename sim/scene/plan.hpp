@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The plan of a run, derived from a scene: contact laws with their parameters, effects on and off with
-/// reasons, and the time step.
+/// The plan of a run: contact laws with their parameters, effects on and off with reasons, and the time step.
+/// make_plan.hpp derives it from a scene.
 
 #include <cstddef>
 #include <cstdint>
@@ -75,12 +75,6 @@ struct Plan {
   /// The limit that determines the step.
   [[nodiscard]] const TimeLimit& shortest() const;
 };
-
-/// Derives the plan. mu = 0 turns off friction, rotation and history, because they then have no influence.
-/// \param beads whose sizes and masses set the step and the bounds; if empty, the sizes that the scene states
-/// \throws ConfigError for parameters that a law needs or refuses, for steps that are too long or too many,
-/// and for an effect that the scene turns off although it has an influence
-Plan make_plan(const Scene& scene, const std::vector<Bead>& beads = {});
 
 /// Length of ContactMemory::values under a plan: the remembered numbers of its laws and of its integrator.
 std::size_t remembered_numbers(const Plan& plan);

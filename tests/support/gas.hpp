@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "sim/system/cell_grid.hpp"
 

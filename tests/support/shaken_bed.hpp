@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "sim/start/start.hpp"
 

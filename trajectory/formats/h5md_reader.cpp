@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
 #include "core/hdf5_self_contained.hpp"
+#include "trajectory/boundary_words.hpp"
 #include "trajectory/formats/contact_lists.hpp"
 #include "trajectory/formats/drive_motion_group.hpp"
 #include "trajectory/formats/foreign_rows.hpp"
@@ -70,8 +71,9 @@ h5::Handle open_object(hid_t parent, const std::string& path) {
 }
 
 Boundary boundary_of(const std::string& word) {
-  if (word == "periodic") return Boundary::periodic;
-  return word == "wall" ? Boundary::wall : Boundary::open;
+  for (const BoundaryWords& row : kBoundaries)
+    if (word == row.word) return row.value;
+  return Boundary::open;  // also the word "none" of H5MD
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
+#include "trajectory/boundary_words.hpp"
 #include "trajectory/formats/contact_lists.hpp"
 #include "trajectory/formats/drive_motion_group.hpp"
 #include "trajectory/formats/h5md_file.hpp"
@@ -20,18 +21,6 @@ namespace {
 
 constexpr hsize_t kFramesPerFlush = 64;
 constexpr std::int64_t kEmptySlot = -1;
-
-const char* word_of(Boundary b) {
-  switch (b) {
-    case Boundary::wall:
-      return "wall";
-    case Boundary::periodic:
-      return "periodic";
-    case Boundary::open:
-      break;
-  }
-  return "open";
-}
 
 /// The lowest schema version whose readers understand the file (kSchemaVersion).
 int schema_needed(const TrajectoryInfo& info) {
@@ -203,7 +192,7 @@ void H5mdWriter::Impl::create_parameters() {
   const h5::Handle cell = h5::create_group(ours.get(), "cell");
   h5::write_attribute(cell.get(), "dimension", info.box.dimension);
   std::vector<std::string> words;
-  for (Boundary b : info.box.boundary) words.emplace_back(word_of(b));
+  for (Boundary b : info.box.boundary) words.push_back(boundary_word(b));
   h5::write_attribute(cell.get(), "boundary", words);
   h5::write_dataset(cell.get(), "lower", info.box.lower.data(), {3});
   h5::write_dataset(cell.get(), "upper", info.box.upper.data(), {3});

@@ -10,9 +10,13 @@ namespace twincell::sim {
 /// 0.8948 -> 0.8971).
 struct NoTensionSpringDashpot : LinearSpringDashpot {
   static constexpr std::string_view kWord = "linear-no-tension", kName = "linear spring-dashpot, no tension";
+  static constexpr bool kOmitsTension = true;
 
   static NoTensionSpringDashpot read(const ContactTable& t) { return {LinearSpringDashpot::read(t)}; }
   [[nodiscard]] Collision collision(const PairScale& p) const { return oscillator(p).without_pull(); }
+  [[nodiscard]] Collision collision_with_tension(const PairScale& p) const {
+    return LinearSpringDashpot::collision(p);
+  }
 
   template <class V>
   static V force(const V* c, V overlap, V v_n, V* memory) {

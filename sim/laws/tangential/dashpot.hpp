@@ -21,8 +21,10 @@ struct DashpotSlider {
   ViscousDamping damping;
   double mu = 0.6;
 
-  static DashpotSlider read(const ContactTable& t) {
-    return {read_tangential_damping(t), t.number("mu", 0, 1e12).value_or(0.6)};
+  static DashpotSlider read(const ContactTable& t) { return {read_tangential_damping(t), read_friction(t)}; }
+  /// Without damping the dashpot exerts nothing, whatever mu is.
+  [[nodiscard]] std::string_view why_no_force() const {
+    return damping.eta(1) == 0 ? "is a dashpot without gamma_t, c_t or c_t_over_c_n" : "";
   }
   [[nodiscard]] double shortest_time(const PairScale& p) const {
     const double eta = damping.eta(p.m_eff);

@@ -12,6 +12,7 @@ namespace twincell::sim {
 struct ForceClippedSlider : SpringSlider {
   static constexpr std::string_view kWord = "force-clipped",
                                     kName = "spring with history, dashpot, limit on the force alone";
+  static constexpr SlipReading kReading = SlipReading::clip;
 
   static ForceClippedSlider read(const ContactTable& t) { return {SpringSlider::read(t)}; }
 

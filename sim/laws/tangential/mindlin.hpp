@@ -5,10 +5,12 @@
 /// 1953 without partial slip).
 
 #include <cmath>
+#include <numbers>
 #include <string_view>
 
 #include "sim/laws/parameters.hpp"
 #include "sim/laws/tangent.hpp"
+#include "sim/laws/tangential/dashpot.hpp"
 
 namespace twincell::sim {
 
@@ -21,6 +23,7 @@ struct MindlinSlider {
   static constexpr const char* kKeys[] = {"mu", "youngs_modulus", "poisson_ratio"};
   static constexpr int kConstants = 2;
   static constexpr bool kActs = true, kHistory = true, kReadsOverlap = true;
+  static constexpr std::string_view kWithoutHistory = DashpotSlider::kWord;
 
   double youngs_modulus = 0;  ///< Y, m g/sigma^2
   double poisson_ratio = 0;   ///< nu, 0 .. 0.5
@@ -28,17 +31,21 @@ struct MindlinSlider {
 
   static MindlinSlider read(const ContactTable& t) {
     return {t.required("youngs_modulus", 0, 1e15, true), t.number("poisson_ratio", 0, 0.5).value_or(0.3),
-            t.number("mu", 0, 1e12).value_or(0.6)};
+            read_friction(t)};
   }
   /// 8 G* sqrt(R_eff); multiplied by sqrt(delta) it is the stiffness.
   [[nodiscard]] double stiffness(double r_eff) const {
     return 2 * youngs_modulus * std::sqrt(r_eff) / ((2 - poisson_ratio) * (1 + poisson_ratio));
   }
-  /// This law alone knows no overlap and sets no limit on the step; the plan limits the step where the normal
-  /// law has a stiffness of its own. With Hertz's law, whose contact time sets the step, the tangential
-  /// oscillation is faster than the normal one by sqrt(2 (1 - nu)/(2 - nu) m_eff/m_t), at most 1.73 for discs
-  /// and 1.87 for spheres: the step resolves both.
+  /// Without an overlap the law sets no limit on the step. With Hertz's law, whose contact time sets the step,
+  /// the tangential oscillation is faster than the normal one by sqrt(2 (1 - nu)/(2 - nu) m_eff/m_t), at most
+  /// 1.73 for discs and 1.87 for spheres: the step resolves both.
   [[nodiscard]] double shortest_time(const PairScale& /*p*/) const { return HUGE_VAL; }
+  /// Half a period of the spring at an overlap.
+  [[nodiscard]] double shortest_time(const PairScale& p, double overlap) const {
+    const double k_t = stiffness(p.r_eff) * std::sqrt(overlap);
+    return k_t > 0 ? std::numbers::pi / std::sqrt(k_t * p.inv_m_t) : HUGE_VAL;
+  }
   [[nodiscard]] std::array<double, kConstants> constants(const PairScale& p) const {
     return {-stiffness(p.r_eff), mu};
   }

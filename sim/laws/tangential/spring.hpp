@@ -9,8 +9,17 @@
 
 #include "sim/laws/linear_collision.hpp"
 #include "sim/laws/tangent.hpp"
+#include "sim/laws/tangential/dashpot.hpp"
 
 namespace twincell::sim {
+
+/// State of the spring while the surfaces slide, that is, where spring and dashpot together would exceed the
+/// Coulomb limit mu |F_n|. The paper only says "truncate".
+enum class SlipReading {
+  rescale,         ///< spring shortened so that spring and dashpot together equal the limit (LAMMPS)
+  spring_limited,  ///< spring alone kept at the limit, without the dashpot
+  clip,            ///< only the force is cut; the spring continues to stretch
+};
 
 /// If |F_t| exceeds the limit mu |F_n|, the force is truncated to the limit and the spring is shortened so
 /// that spring and dashpot together give exactly the limit. The paper says only "truncate"; this is the
@@ -20,14 +29,15 @@ struct SpringSlider {
   static constexpr const char* kKeys[] = {"mu", "k_t", "gamma_t", "c_t", "c_t_over_c_n"};
   static constexpr int kConstants = 4;
   static constexpr bool kActs = true, kHistory = true;
+  static constexpr std::string_view kWithoutHistory = DashpotSlider::kWord;
+  static constexpr SlipReading kReading = SlipReading::rescale;
 
   double k_t = 1e4;  ///< > 0, m g/sigma
   ViscousDamping damping;
   double mu = 0.6;
 
   static SpringSlider read(const ContactTable& t) {
-    return {t.number("k_t", 0, 1e12).value_or(1e4), read_tangential_damping(t),
-            t.number("mu", 0, 1e12).value_or(0.6)};
+    return {read_tangential_stiffness(t), read_tangential_damping(t), read_friction(t)};
   }
   [[nodiscard]] double shortest_time(const PairScale& p) const {
     const double eta = damping.eta(p.m_eff);

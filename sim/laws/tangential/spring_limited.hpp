@@ -11,6 +11,7 @@ namespace twincell::sim {
 struct SpringLimitedSlider : SpringSlider {
   static constexpr std::string_view kWord = "spring-limited",
                                     kName = "spring with history, dashpot, limit on the spring alone";
+  static constexpr SlipReading kReading = SlipReading::spring_limited;
 
   static SpringLimitedSlider read(const ContactTable& t) { return {SpringSlider::read(t)}; }
 

@@ -11,6 +11,7 @@
 #include "sim/device/advance_bed.hpp"
 #include "sim/device/device_solver.hpp"
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "tests/support/dense_bed.hpp"
 
 namespace twincell::sim {

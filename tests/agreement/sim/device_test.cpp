@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "sim/device/device_solver.hpp"
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/dense_bed.hpp"
 

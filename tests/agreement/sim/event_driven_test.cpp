@@ -14,6 +14,7 @@
 #include "sim/event_driven/event_driven_solver.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/run/simulation.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 
 namespace twincell::sim {

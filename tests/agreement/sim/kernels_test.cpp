@@ -9,6 +9,7 @@
 #include <random>
 
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "tests/support/dense_bed.hpp"
 
 namespace twincell::sim {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "sim/run/simulation.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/complaint.hpp"
 #include "tests/support/temporary_folder.hpp"

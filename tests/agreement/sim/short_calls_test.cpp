@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/start/start.hpp"

@@ -9,6 +9,7 @@
 
 #include "sim/run/make_solver.hpp"
 #include "sim/run/simulation.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "sim/start/start.hpp"
 #include "tests/support/validation.hpp"

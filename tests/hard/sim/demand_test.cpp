@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 
 #include "core/error.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "tests/support/complaint.hpp"

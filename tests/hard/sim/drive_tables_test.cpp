@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/scene/plan.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/complaint.hpp"
 

@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/run/simulation.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/collision.hpp"
 #include "tests/support/complaint.hpp"

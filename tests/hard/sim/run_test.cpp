@@ -7,9 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "analysis/motion/phase_thresholds.hpp"
+#include "analysis/observable/observable.hpp"
 #include "core/error.hpp"
 #include "sim/run/simulation.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/collision.hpp"
 #include "tests/support/complaint.hpp"

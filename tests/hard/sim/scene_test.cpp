@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "core/error.hpp"
-#include "sim/scene/plan.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/presets.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/complaint.hpp"

@@ -9,6 +9,7 @@
 
 #include "imaging/benchmark/picture.hpp"
 #include "imaging/locate/locator.hpp"
+#include "imaging/refine/missed_discs.hpp"
 #include "imaging/refine/out_of_frame_discs.hpp"
 
 namespace twincell::imaging {
@@ -34,7 +35,7 @@ std::vector<Proposal> beyond(const rendered::Picture& p) {
   args.picture = &darkness;
   args.model = &model;
   args.blur.variance = p.blur * p.blur + 1.0 / 12;
-  return out_of_frame_discs(args, kRadius, kRadius + 1);
+  return out_of_frame_discs(args, kRadius, kRadius + 1, kMissedDarkness);
 }
 
 TEST(OutOfFrameDiscs, DiscsAreSeenByTheirSlivers) {

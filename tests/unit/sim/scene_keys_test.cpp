@@ -2,7 +2,7 @@
 #include "sim/scene/scene_keys.hpp"
 
 #include "sim/laws/axes.hpp"
-#include "sim/scene/plan.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "sim/scene/scene.hpp"
 #include "tests/support/key_table_checks.hpp"

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 
 namespace twincell::sim {

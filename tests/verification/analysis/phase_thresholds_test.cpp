@@ -1,12 +1,12 @@
 // V4.9, V5.4: s_b of the completely inelastic rigid bed, s_c of an imposed shear: closed forms, no dynamics.
-#include "analysis/motion/phase_thresholds.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 #include <sstream>
 
+#include "analysis/motion/bed_phase.hpp"
+#include "analysis/motion/bouncing.hpp"
 #include "tests/support/rigid_bed.hpp"
 #include "tests/support/validation.hpp"
 

@@ -8,6 +8,7 @@
 
 #include "sim/run/make_solver.hpp"
 #include "sim/run/simulation.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/collision.hpp"
 #include "tests/support/validation.hpp"

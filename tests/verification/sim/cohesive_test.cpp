@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/error.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/collision.hpp"
 #include "tests/support/validation.hpp"

@@ -15,6 +15,7 @@
 #include "sim/accuracy/work_precision.hpp"
 #include "sim/laws/axes.hpp"
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/validation.hpp"
 

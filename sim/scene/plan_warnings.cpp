@@ -1,0 +1,69 @@
+#include "sim/scene/plan_warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "sim/scene/recorded_drive.hpp"
+
+namespace twincell::sim {
+
+namespace {
+
+void warn_of_harmonics(const Drive& drive, std::vector<std::string>& warnings) {
+  for (std::size_t k = 0; k < drive.harmonics.size(); ++k)
+    if (const double amplitude = drive.harmonics[k].amplitude; amplitude > 1)
+      warnings.push_back(
+          fmt::format("harmonic {} of the drive is {:g} times the first; drive.harmonics states amplitudes "
+                      "relative to the first, so that 10 % is 0.1.",
+                      k + 2, amplitude));
+}
+
+/// Reason why the tangential law of these contacts exerts no force; empty if it exerts one, or is meant not
+/// to.
+std::string_view why_no_friction(const ContactLaws& laws) {
+  return std::visit(
+      []<class Law>(const Law& law) -> std::string_view {
+        if constexpr (MayExertNoForce<Law>)
+          return law.why_no_force();
+        else
+          return "";
+      },
+      laws.tangential);
+}
+
+void warn_of_missing_friction(const Plan& plan, std::vector<std::string>& warnings) {
+  const std::string_view why = why_no_friction(plan.bead);
+  const auto slides_freely = [](const ContactLaws& laws) { return !why_no_friction(laws).empty(); };
+  if (!why.empty() && std::all_of(plan.wall_laws.begin(), plan.wall_laws.end(), slides_freely))
+    warnings.push_back(fmt::format("the tangential law {}: no contact has friction, whatever mu is.", why));
+}
+
+void warn_of_steps(const Scene& s, const Plan& plan, std::vector<std::string>& warnings) {
+  constexpr double kManySteps = 2e6;
+  if (s.steps_per_contact < kFewSteps)
+    warnings.push_back(fmt::format(
+        "time.steps_per_contact = {:g} is below {:g}: collisions are coarse and a bed may not rest.",
+        s.steps_per_contact, kFewSteps));
+  if (static_cast<double>(plan.steps_per_period) > kManySteps) {
+    const TimeLimit& why = plan.shortest();
+    warnings.push_back(
+        fmt::format("a cycle takes {:.3g} steps, because of the {} ({:.3g} t0): the run will be slow.",
+                    static_cast<double>(plan.steps_per_period), why.name, why.time));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> warnings_of(const Scene& s, const Plan& plan) {
+  std::vector<std::string> warnings;
+  for (const VoidKey& key : s.void_keys) warnings.push_back(key.text());
+  for (const std::string& doubt : warnings_of_record(s.drive)) warnings.push_back(doubt);
+  warn_of_harmonics(s.drive, warnings);
+  warn_of_missing_friction(plan, warnings);
+  warn_of_steps(s, plan, warnings);
+  return warnings;
+}
+
+}  // namespace twincell::sim
