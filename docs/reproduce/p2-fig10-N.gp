@@ -50,6 +50,7 @@ set format y '%g'
 set title '{/:Bold (c)} e = 0.9, μ = 0.4'
 set arrow from 6,1 to 8,1 nohead lw 1.5 dt 4 lc rgb '#555555'
 plot 'p2-fig10-N.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title '2D rough', \
+     'p2-fig10-N.dat' index 1 using 1:2:3:4 with yerrorbars lt 2 title '3D rough', \
      keyentry with lines lw 1.5 dt 4 lc rgb '#555555' title 'paper: about 1 for N ≥ 6'
 unset output
 reset

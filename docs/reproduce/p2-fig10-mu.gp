@@ -48,7 +48,8 @@ unset logscale y
 set ytics 0.2
 set format y '%g'
 set title '{/:Bold (b)} e = 0.9, N = 4'
-plot 'p2-fig10-mu.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title '2D rough'
+plot 'p2-fig10-mu.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title '2D rough', \
+     'p2-fig10-mu.dat' index 1 using 1:2:3:4 with yerrorbars lt 2 title '3D rough'
 unset output
 reset
 }
