@@ -52,16 +52,15 @@ std::vector<std::string> p1_contact_conditions(const std::string& keys) {
   const sim::Scene scene = read({20, "crystal_a", 1, 10, keys});
   const auto& bead = scene.contact.bead;
   const double gamma_n = bead.required("gamma_n"), gamma_t = bead.required("gamma_t");
-  return {
-      fmt::format("cell {:g} sigma wide, omega = {:g}, side walls {} with the plate", scene.width,
-                  scene.drive.omega, scene.side_walls_move ? "ride" : "do not ride"),
-      fmt::format(
-          "contacts: k_n = {:g}, k_t = {:g}, gamma_n = {:g}, gamma_t = {:g} (c_t/c_n = {:g}), mu = {:g}",
-          bead.required("k_n"), bead.required("k_t"), gamma_n, gamma_t, gamma_t / gamma_n,
-          bead.required("mu")),
-      fmt::format("tension {} at the end of a contact",
-                  scene.contact.normal == "linear" ? "allowed" : "clipped"),
-      "slip rule: " + slip_rule(scene.contact.tangential)};
+  return {fmt::format("cell {:g} sigma wide, omega = {:g}, side walls {} with the plate", scene.width,
+                      scene.drive.omega, scene.side_walls_move ? "ride" : "do not ride"),
+          fmt::format(
+              "contacts: k_n = {:g}, k_t = {:g}, gamma_n = {:g}, gamma_t = {:g} (c_t/c_n = {:g}), mu = {:g}",
+              bead.required("k_n"), bead.required("k_t"), gamma_n, gamma_t, gamma_t / gamma_n,
+              bead.required("mu")),
+          fmt::format("tension {} at the end of a contact",
+                      scene.contact.normal == "linear" ? "allowed" : "clipped"),
+          "slip rule: " + slip_rule(scene.contact.tangential)};
 }
 
 std::string p1_step_condition(const P1Run& run) {

@@ -94,6 +94,7 @@ class PhaseThresholds : public Observable {
 
   [[nodiscard]] std::string why_no_cycles() const {
     if (context_.info.phases_per_cycle <= 0) return "the frames are not locked to the drive's phase";
+    if (context_.info.box.periodic(Axis::z)) return "the cell is periodic along z: it has no plate";
     if (context_.tracers.empty()) return context_.no_tracers;
     return "";
   }

@@ -32,7 +32,7 @@ namespace twincell::analysis {
 /// period 2 would bias an odd number. An instant counts if at least 80 % of the tracers are present. Jumps of
 /// one tracer by more than sigma/2 between the beginnings of consecutive cycles are reported in the
 /// convention of s_j. Absent results state the reason: fewer than 2 tracers (s_j); fewer than 2 phases, no
-/// plate height, or no whole cycle (s_b).
+/// plate height, or no whole cycle (s_b); a cell that is periodic along z (all).
 extern const ObservableEntry phase_thresholds_observable;
 
 }  // namespace twincell::analysis

@@ -18,6 +18,7 @@ struct CollisionForces {
 
   V n[D], f_t[D], per_distance, overlap, v_n, f_n;
   Tangent<V, kTurn> v_t, turning;  ///< tangential velocity; n x F_t (in 2D F_t)
+  bool released = false;           ///< the law omits tension, and F_n would pull: there is no force
 
   static V dot(const V* a, const V* b) {
     V sum = a[D - 1] * b[D - 1];
@@ -53,7 +54,7 @@ struct CollisionForces {
   /// look_again().
   [[gnu::always_inline]] void approach(const V* c_n, const V* u, const V* s) {
     v_n = dot(n, u);
-    f_n = N::template force<V>(c_n, overlap, v_n, nullptr);
+    f_n = smooth_force<N>(c_n, overlap, v_n);
     if constexpr (T::kActs && D == 2) {
       v_t.c[0] = n[0] * u[1] - n[1] * u[0] - s[0];
     } else if constexpr (T::kActs) {
@@ -67,7 +68,13 @@ struct CollisionForces {
   /// which the Coulomb limit binds. The formula of a regime is also evaluated outside its range: |F_n| is F_n
   /// or -F_n as `pressed` states, whatever the sign of F_n.
   [[gnu::always_inline]] void friction(const V* c_t, bool pressed, bool slides) {
+    released = OmitsTension<N> && !pressed;
     if constexpr (T::kActs) {
+      if (released) {
+        for (int k = 0; k < D; ++k) f_t[k] = V(0.0);
+        for (int k = 0; k < kTurn; ++k) turning.c[k] = V(0.0);
+        return;
+      }
       const V pressure = pressed ? f_n : -f_n;
       const V sign = select(pressure < V(0.0), V(-1.0), V(1.0));
       const Tangent<V, kTurn> force = slides ? sign * T::sliding(c_t, v_t, f_n) : T::sticking(c_t, v_t);
@@ -85,6 +92,7 @@ struct CollisionForces {
   }
   /// Distance to the Coulomb limit; call after approach(). It is extended outside its range as in friction().
   [[nodiscard]] [[gnu::always_inline]] V slack(const V* c_t, bool pressed) const {
+    if (OmitsTension<N> && !pressed) return V(-1.0);  // without a normal force surfaces slide
     const V slack = T::slack(c_t, norm(v_t), f_n);
     return select((pressed ? f_n : -f_n) < V(0.0), slack - V(2.0) * T::slack(c_t, V(0.0), f_n), slack);
   }
@@ -92,7 +100,7 @@ struct CollisionForces {
   /// there are none
   [[gnu::always_inline]] void slopes(V inv_mass, V turn, const V* push, V* to) const {
     for (int k = 0; k < D; ++k) {
-      V force = f_n * n[k];
+      V force = released ? V(0.0) : f_n * n[k];
       if constexpr (T::kActs) force = force + f_t[k];
       to[k] = force * inv_mass;
       if (push != nullptr) to[k] = to[k] + push[k];

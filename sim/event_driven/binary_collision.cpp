@@ -86,7 +86,7 @@ class BinaryCollision {
         t += part(t, regime, y);
       } else if (what == Event::turn) {
         // F_n vanishes here, and with it the Coulomb limit.
-        regime = {!regime.pressed, step.surfaces_slide()};
+        regime = {!regime.pressed, (OmitsTension<N> && regime.pressed) || step.surfaces_slide()};
       } else if (what == Event::limit) {
         regime.slides = !regime.slides;
       }
@@ -105,12 +105,12 @@ class BinaryCollision {
     Forces f = approach(numbers(m));
     const Regime regime = regime_of(f);
     f.friction(c_t_.data(), regime.pressed, regime.slides);
-    const Vec3 n = vector(f.n);
+    const Vec3 n = vector(f.n), f_n = f.released ? Vec3(Vec3::Zero()) : Vec3(f.f_n * n);
     if constexpr (T::kActs) {
       const Vec3 f_t = vector(f.f_t);
-      return {f.f_n * n + f_t, n.cross(f_t), n};
+      return {f_n + f_t, n.cross(f_t), n};
     } else {
-      return {f.f_n * n, Vec3::Zero(), n};
+      return {f_n, Vec3::Zero(), n};
     }
   }
 
@@ -192,7 +192,7 @@ class BinaryCollision {
       // Spring and dashpot that approximate the normal force.
       const double deep = speed * scale / 3;
       const auto f_n = [&](double overlap, double v_n) {
-        return N::template force<double>(law.c_n_.data(), overlap, v_n, nullptr);
+        return smooth_force<N>(law.c_n_.data(), overlap, v_n);
       };
       start_.damping = -f_n(0, speed) / speed * law.inv_mass_;
       start_.frequency = std::sqrt(std::max(0.0, f_n(deep, 0) / deep * law.inv_mass_));
@@ -265,10 +265,8 @@ class BinaryCollision {
         const double x = vanishing(begins, values, static_cast<std::size_t>(std::countr_zero(others)), near_);
         if (x < first.first || first.second == Event::none) first = {x, what};
       };
-      if constexpr (T::kActs) {
-        look(Event::limit, slack_, motion_.slack, !regime_.slides);
-        look(Event::turn, forces_.f_n, motion_.f_n, regime_.pressed);
-      }
+      if constexpr (T::kActs) look(Event::limit, slack_, motion_.slack, !regime_.slides);
+      if constexpr (T::kActs || OmitsTension<N>) look(Event::turn, forces_.f_n, motion_.f_n, regime_.pressed);
       look(Event::parting, forces_.overlap, motion_.overlap, true);
       return first;
     }

@@ -43,7 +43,8 @@ concept NormalLaw = ContactLaw<Law> &&
 };
 
 /// A normal law that omits the attraction at the end of a contact: kOmitsTension = true. It gives the
-/// collision as it is, and as it would be with the attraction.
+/// collision as it is, and as it would be with the attraction. Its force is max(0, force_with_tension()),
+/// which takes the same arguments.
 template <class Law>
 concept OmitsTension = requires(const Law law, const PairScale& pair) {
   requires Law::kOmitsTension;

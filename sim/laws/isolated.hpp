@@ -16,11 +16,20 @@ concept Attracts = requires {
 };
 
 /// A normal force given by one formula for all overlaps and velocities, without memory, and repulsive at
-/// first touch.
+/// first touch. Of a law that omits tension (concepts.hpp) the formula is that with tension.
 template <class N>
 concept SmoothNormal = N::kMemory == 0 && !Attracts<N> && requires {
   N::kSmooth;
 };
+
+/// The formula of a smooth normal force. Of a law that omits tension it is below 0 where the force is 0.
+template <class N, class V>
+[[gnu::always_inline]] inline V smooth_force(const V* c, V overlap, V v_n) {
+  if constexpr (OmitsTension<N>)
+    return N::template force_with_tension<V>(c, overlap, v_n, nullptr);
+  else
+    return N::template force<V>(c, overlap, v_n, nullptr);
+}
 
 /// A tangential law without history: either no force at all, or one that provides slack(), its distance to
 /// the Coulomb limit.

@@ -20,7 +20,11 @@ struct NoTensionSpringDashpot : LinearSpringDashpot {
 
   template <class V>
   static V force(const V* c, V overlap, V v_n, V* memory) {
-    return max(V(0.0), LinearSpringDashpot::force(c, overlap, v_n, memory));
+    return max(V(0.0), force_with_tension(c, overlap, v_n, memory));
+  }
+  template <class V>
+  static V force_with_tension(const V* c, V overlap, V v_n, V* memory) {
+    return LinearSpringDashpot::force(c, overlap, v_n, memory);
   }
 };
 

@@ -37,9 +37,9 @@ struct MindlinSlider {
   [[nodiscard]] double stiffness(double r_eff) const {
     return 2 * youngs_modulus * std::sqrt(r_eff) / ((2 - poisson_ratio) * (1 + poisson_ratio));
   }
-  /// Without an overlap the law sets no limit on the step. With Hertz's law, whose contact time sets the step,
-  /// the tangential oscillation is faster than the normal one by sqrt(2 (1 - nu)/(2 - nu) m_eff/m_t), at most
-  /// 1.73 for discs and 1.87 for spheres: the step resolves both.
+  /// Without an overlap the law sets no limit on the step. With Hertz's law, whose contact time sets the
+  /// step, the tangential oscillation is faster than the normal one by sqrt(2 (1 - nu)/(2 - nu) m_eff/m_t),
+  /// at most 1.73 for discs and 1.87 for spheres: the step resolves both.
   [[nodiscard]] double shortest_time(const PairScale& /*p*/) const { return HUGE_VAL; }
   /// Half a period of the spring at an overlap.
   [[nodiscard]] double shortest_time(const PairScale& p, double overlap) const {

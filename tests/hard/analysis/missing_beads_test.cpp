@@ -86,6 +86,13 @@ TEST(MissingBeads, NoPhaseNoVelocityNoPlate) {
   EXPECT_NE(find_result(analyze(bed), "s_b").absent.find("phase"), std::string::npos);
 }
 
+TEST(MissingBeads, ACellThatIsPeriodicAlongZHasNoPlateAndNoPhase) {
+  MemoryTrajectory bed = test::rigid_bed({.gamma = 2.5});
+  bed.info().box.boundary[2] = Boundary::periodic;
+  for (const char* name : {"s_b", "s_c", "drift", "phase"})
+    EXPECT_NE(find_result(analyze(bed), name).absent.find("periodic along z"), std::string::npos) << name;
+}
+
 TEST(MissingBeads, ATracerLostNowAndThenDoesNotShiftTheVerdict) {
   const test::RigidBed bed{.gamma = 1.10, .cycles = 20};
   const double whole = find_result(analyze(test::rigid_bed(bed)), "s_b").value();

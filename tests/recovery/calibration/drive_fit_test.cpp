@@ -1,6 +1,8 @@
 // The drive from heights with known parameters: bias and rms separately, coverage of the stated intervals,
 // and laboratory faults: outliers, missing and duplicated frames, jitter, and a shaker whose motion is not a
 // sine.
+#include "calibration/drive/drive_fit.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +12,6 @@
 #include <random>
 
 #include "calibration/drive/accelerometer.hpp"
-#include "calibration/drive/drive_fit.hpp"
 #include "core/error.hpp"
 #include "tests/support/complaint.hpp"
 

@@ -1,13 +1,13 @@
 // Displacements of the beads from the first frame, found by tracking backwards from the first calm frame.
 
+#include "imaging/link/initial_velocities.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
-
-#include "imaging/link/initial_velocities.hpp"
 
 namespace twincell::imaging {
 namespace {

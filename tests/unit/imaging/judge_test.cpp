@@ -1,5 +1,7 @@
 // For every verdict, a picture or a candidate that produces it.
 
+#include "imaging/refine/judge.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +12,6 @@
 #include <vector>
 
 #include "imaging/benchmark/picture.hpp"
-#include "imaging/refine/judge.hpp"
 #include "imaging/refine/picture_fit.hpp"
 
 namespace twincell::imaging {

@@ -1,5 +1,7 @@
 // Discs centred outside the frame that darken its border, and beads in the corners of the frame.
 
+#include "imaging/refine/out_of_frame_discs.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +12,6 @@
 #include "imaging/benchmark/picture.hpp"
 #include "imaging/locate/locator.hpp"
 #include "imaging/refine/missed_discs.hpp"
-#include "imaging/refine/out_of_frame_discs.hpp"
 
 namespace twincell::imaging {
 namespace {

@@ -1,12 +1,12 @@
 // The residual illumination, found from the means of coarse tiles.
 
+#include "imaging/preprocess/residual_illumination.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <random>
-
-#include "imaging/preprocess/residual_illumination.hpp"
 
 namespace twincell::imaging {
 namespace {

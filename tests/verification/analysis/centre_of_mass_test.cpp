@@ -1,11 +1,12 @@
 // The height of the centre of mass of beds whose motion is known in closed form.
+#include "analysis/motion/centre_of_mass.hpp"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "analysis/motion/centre_of_mass.hpp"
 #include "tests/support/rigid_bed.hpp"
 #include "tests/support/validation.hpp"
 

@@ -22,12 +22,12 @@ TEST(PlateDrag, FreeMotionDecaysExponentially) {
     b.kernel->advance(b.system, steps);
     const double decay =
         -std::log(b.system.beads[0].vx / 2) / (kRate * static_cast<double>(steps) * b.system.dt);
-    validate({"V2.19", fmt::format("drag of the plates: rate of decay over c (1 + c dt/2), n = {}", n), 1,
-              1e-6, "closed form"},
-             decay / (1 + kRate * b.system.dt / 2));
-    validate({"V2.19", fmt::format("drag of the plates: v_z/v_x of a free bead, n = {}", n), 0.5, 1e-9,
-              "closed form"},
-             b.system.beads[0].vz / b.system.beads[0].vx);
+    test::validate({"V2.19", fmt::format("drag of the plates: rate of decay over c (1 + c dt/2), n = {}", n),
+                    1, 1e-6, "closed form"},
+                   decay / (1 + kRate * b.system.dt / 2));
+    test::validate({"V2.19", fmt::format("drag of the plates: v_z/v_x of a free bead, n = {}", n), 0.5, 1e-9,
+                    "closed form"},
+                   b.system.beads[0].vz / b.system.beads[0].vx);
   }
 }
 
@@ -35,8 +35,8 @@ TEST(PlateDrag, AFallEndsAtTheTerminalVelocity) {
   Bench b("[cell]\nheight = 1000.0\nlid = \"wall\"\nplate_drag = 20.0\n");
   b.add(10, 500, 0, 0);
   b.advance_time(1.5);
-  validate({"V2.19", "drag of the plates: terminal velocity", -1 / kRate, 1e-9, "-g/c"},
-           b.system.beads[0].vz);
+  test::validate({"V2.19", "drag of the plates: terminal velocity", -1 / kRate, 1e-9, "-g/c"},
+                 b.system.beads[0].vz);
 }
 
 }  // namespace
