@@ -67,6 +67,21 @@ bool is_gamma(const std::string& key) {
   return key == "drive.gamma" || key == "drive.peak_acceleration_g";
 }
 
+/// Axes of the sweep at an onset, without those that N_l and start state: "drive.omega = 2".
+std::string other_axes(const JsonView& onset) {
+  std::string text;
+  const auto axes = onset.find("axes");
+  if (!axes || !axes->value().is_object()) return text;
+  for (const auto& [key, value] : axes->value().items()) {
+    if (key == "beads.layers" || key == "start.kind" || value.is_null()) continue;
+    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", key,
+                        value.is_number()   ? fmt::format("{:g}", value.get<double>())
+                        : value.is_string() ? value.get<std::string>()
+                                            : value.dump());
+  }
+  return text;
+}
+
 void add_onsets(const JsonView& document, analysis::Comparison& comparison) {
   const auto onsets = document.find("onsets");
   if (!onsets) return;
@@ -85,7 +100,8 @@ void add_onsets(const JsonView& document, analysis::Comparison& comparison) {
                                      .below = number(onset, "low"),
                                      .above = number(onset, "high"),
                                      .sweep = true,
-                                     .fitted = number(onset, "value")});
+                                     .fitted = number(onset, "value"),
+                                     .axes = other_axes(onset)});
   }
 }
 

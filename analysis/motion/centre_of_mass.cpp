@@ -30,7 +30,7 @@ class CentreOfMass : public Observable {
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
     const double height = centre_of_mass_height(frame, info_.mass);
-    if (!std::isfinite(height)) return;
+    if (!std::isfinite(height) || info_.box.periodic(Axis::z)) return;
     if (phases_ == 0) {
       mean_.add(height);
       return;
@@ -52,7 +52,9 @@ class CentreOfMass : public Observable {
 
   [[nodiscard]] std::vector<Result> results() const override {
     const char* of = phases_ > 0 ? "cycles" : "frames";
-    const std::string none = phases_ > 0 ? "no whole cycle" : "no frame holds a bead";
+    const std::string none = info_.box.periodic(Axis::z) ? "the cell is periodic along z: it has no plate"
+                             : phases_ > 0               ? "no whole cycle"
+                                                         : "no frame holds a bead";
     const std::string rule =
         fmt::format("mean over {} of the height of the centre of mass above the plate's mean",
                     phases_ > 0 ? "whole cycles" : "frames");

@@ -146,6 +146,8 @@ class Slip : public Observable {
 
   [[nodiscard]] std::string why_none() const {
     if (!context_.info.columns.phase) return "the frames are not locked to the drive's phase";
+    if (context_.info.box.periodic(Axis::z))
+      return "the cell is periodic along z: the bed has no free surface below which slips count";
     if (periods_ == 0)
       return "slip is counted between the beginnings of consecutive cycles, and the trajectory does not "
              "contain two of them";

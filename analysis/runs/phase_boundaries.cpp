@@ -77,8 +77,10 @@ std::vector<PhaseBoundary> find_boundaries(const std::vector<Run>& runs) {
 
 std::string boundary_of(const PhaseBoundary& boundary) {
   if (!boundary.sweep && boundary.start == "trajectory") return "twins";
+  const std::string comma = boundary.start.empty() || boundary.axes.empty() ? "" : ", ",
+                    which = boundary.start + comma + boundary.axes;
   return (boundary.sweep ? "sweep" : side_name(boundary.side)) +
-         (boundary.start.empty() ? "" : fmt::format(" ({})", boundary.start));
+         (which.empty() ? "" : fmt::format(" ({})", which));
 }
 
 std::string boundary_text(const PhaseBoundary& boundary) {

@@ -26,6 +26,7 @@ struct PhaseBoundary {
   bool overlap = false;  ///< inside the bracket, runs with the phase are below runs without: seeds differ
   bool sweep = false;    ///< from a sweep: `below` and `above` are the ends of its interval
   std::optional<double> fitted = {};  ///< the onset fitted by a sweep
+  std::string axes = {};  ///< other axes of the sweep with their values, "drive.omega = 2"; empty: none
   /// The fitted onset, else the middle of the bracket; absent if the bracket is open on one side.
   [[nodiscard]] std::optional<double> gamma() const;
   /// Half width of the bracket; absent if it is open.
@@ -36,8 +37,8 @@ struct PhaseBoundary {
 /// convecting bed also counts as bouncing.
 std::vector<PhaseBoundary> find_boundaries(const std::vector<Run>& runs);
 
-/// Origin of a boundary: "experiment", "simulation", "simulation (random)", "sweep (random)"; "twins" for
-/// simulations that start from a filmed packing.
+/// Origin of a boundary: "experiment", "simulation", "simulation (random)", "sweep (random)", "sweep (random,
+/// drive.omega = 2)"; "twins" for simulations that start from a filmed packing.
 std::string boundary_of(const PhaseBoundary& boundary);
 /// Position of a boundary in Gamma: "1.25 ± 0.35", "above 2.5", "below 0.9".
 std::string boundary_text(const PhaseBoundary& boundary);

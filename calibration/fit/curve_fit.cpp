@@ -146,29 +146,54 @@ FitReport best_of_starts(const Law& law, const Selected& selected) {
   return *best;
 }
 
+/// ln p of a frequency by the law. A probability of 1 is approached, not reached.
+double log_probability(const Law& law, const Frequency& f, const std::vector<double>& parameters) {
+  constexpr double kMostLog = -1e-9;
+  return std::min(law.value(f.x, parameters.data()), kMostLog);
+}
+
+/// Logarithm of the binomial likelihood, up to a constant.
+double log_likelihood(const Law& law, const std::vector<Frequency>& frequencies,
+                      const std::vector<double>& parameters) {
+  double sum = 0;
+  for (const Frequency& f : frequencies) {
+    const double log_p = log_probability(law, f, parameters);
+    sum += f.trials * (f.y * log_p + (1 - f.y) * std::log(-std::expm1(log_p)));
+  }
+  return sum;
+}
+
 /// Maximum likelihood of the frequencies from the parameters of `report`, which it replaces; so are the
-/// points, by working ordinates ln p + (y - p)/p with the errors sqrt((1 - p)/(n p)). \returns whether it
-/// converged
+/// points, by working ordinates ln p + (y - p)/p with the errors sqrt((1 - p)/(n p)). A step that lowers the
+/// likelihood is halved. (Ordinates that were limited to 10 from the curve kept the fit away from the
+/// maximum.) \returns whether it converged
 bool maximise_likelihood(const Law& law, Selected& selected, FitReport& report) {
-  constexpr int kRounds = 100;
-  constexpr double kConverged = 1e-9, kMostLog = -1e-9, kFarthest = 10;
+  constexpr int kRounds = 100, kHalvings = 40;
+  constexpr double kConverged = 1e-9;
   Selected working{.points = {}, .weighted = true, .frequencies = {}};
   FitReport now = report;
+  double likelihood = log_likelihood(law, selected.frequencies, now.values);
   for (int round = 0; round < kRounds; ++round) {
     working.points.clear();
     for (const Frequency& f : selected.frequencies) {
-      const double log_p = std::min(law.value(f.x, now.values.data()), kMostLog), p = std::exp(log_p);
+      const double log_p = log_probability(law, f, now.values), p = std::exp(log_p);
       if (!(p > 0)) return false;
-      working.points.push_back(
-          {f.x, log_p + std::min((f.y - p) / p, kFarthest), std::sqrt((1 - p) / (f.trials * p))});
+      working.points.push_back({f.x, log_p + (f.y - p) / p, std::sqrt((1 - p) / (f.trials * p))});
     }
     FitReport next = from_start(law, working, now.values);
-    double change = 0;
-    for (std::size_t k = 0; k < next.values.size(); ++k) {
-      if (!next.usable || !std::isfinite(next.values[k])) return false;
-      change = std::max(change, std::abs(next.values[k] - now.values[k]) / (1 + std::abs(next.values[k])));
+    for (const double value : next.values)
+      if (!next.usable || !std::isfinite(value)) return false;
+    double reached = log_likelihood(law, selected.frequencies, next.values);
+    for (int k = 0; k < kHalvings && !(reached >= likelihood); ++k) {
+      for (std::size_t q = 0; q < next.values.size(); ++q)
+        next.values[q] = 0.5 * (next.values[q] + now.values[q]);
+      reached = log_likelihood(law, selected.frequencies, next.values);
     }
+    double change = 0;
+    for (std::size_t k = 0; k < next.values.size(); ++k)
+      change = std::max(change, std::abs(next.values[k] - now.values[k]) / (1 + std::abs(next.values[k])));
     now = std::move(next);
+    likelihood = reached;
     if (change > kConverged) continue;
     report = std::move(now);
     selected.points = std::move(working.points);
@@ -192,6 +217,17 @@ double correlation_of(const std::vector<FitPoint>& points, const std::vector<dou
     yf += (points[i].y - y) * (curve[i] - f);
   }
   return yy > 0 && ff > 0 ? yf / std::sqrt(yy * ff) : kNaN;
+}
+
+/// Correlation of the frequencies, zeros included, with the probabilities of the law.
+double correlation_of_frequencies(const CurveFit& fit, const Selected& selected) {
+  std::vector<FitPoint> points;
+  std::vector<double> curve;
+  for (const Frequency& f : selected.frequencies) {
+    points.push_back({f.x, f.y, 1});
+    curve.push_back(fit.at(f.x));
+  }
+  return correlation_of(points, curve);
 }
 
 /// Half the sum of squares of the ordinates, in units of their errors.
@@ -395,7 +431,8 @@ CurveFit fit_curve(const Law& law, const std::vector<DataPoint>& points, const F
     curve.push_back(law.value(p.x, result.fit.values.data()));
     residuals.push_back((p.y - curve.back()) / p.error);
   }
-  result.correlation = correlation_of(selected.points, curve);
+  result.correlation = result.likelihood ? correlation_of_frequencies(result, selected)
+                                         : correlation_of(selected.points, curve);
   result.runs = runs_test(residuals);
   compare_with_nested(result, selected);
   add_intervals(result, selected);

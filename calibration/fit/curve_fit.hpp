@@ -56,7 +56,8 @@ struct CurveFit {
   std::size_t n_outside = 0;  ///< outside the window
   std::size_t n_invalid = 0;  ///< not finite, y < 0 in a logarithmic law, x <= 0 where it must be positive
   std::vector<double> upper_limits;  ///< 95 % limits of zero points with known trials, in input order
-  double correlation = 0;            ///< between y (or ln y) and the curve; NaN if either is constant
+  /// between y (or ln y; y if `likelihood`) and the curve; NaN if either is constant
+  double correlation = 0;
   RunsTest runs;
   double p_nested = 0;             ///< chance probability of the gain over the nested law; NaN without one
   std::vector<std::string> notes;  ///< caveats for anyone who quotes the parameters

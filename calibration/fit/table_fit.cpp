@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/constants.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
 
@@ -70,6 +72,14 @@ void check_frequencies(const std::string& file, const std::vector<DataPoint>& po
       throw InputError({.file = file, .key = o.y},
                        fmt::format("row {} contains {:g}; with --trials it must be a frequency from 0 to 1",
                                    i + 1, points[i].y));
+}
+
+/// A frequency of no trials says nothing, whatever number stands there. \returns the number of such rows
+std::size_t leave_out_untried(std::vector<DataPoint>& points) {
+  std::size_t untried = 0;
+  for (DataPoint& p : points)
+    if (!(p.trials > 0)) p.y = kNaN, ++untried;
+  return untried;
 }
 
 /// The reason why the points are not weighted although errors were given.
@@ -158,7 +168,9 @@ TableFit fit_table(const Table& table, const std::string& law, FitColumns column
   std::vector<DataPoint> points = points_of(table, columns);
   check_errors(table.file, points, columns);
   if (!columns.trials.empty()) check_frequencies(table.file, points, columns);
+  const std::size_t untried = columns.trials.empty() ? 0 : leave_out_untried(points);
   CurveFit fit = fit_of(law_named(law), table.file, points, window);
+  if (untried > 0) fit.notes.push_back(fmt::format("{} without trials left out", counted(untried, "row")));
   if (!fit.weighted && !(columns.sigma.empty() && columns.trials.empty()))
     fit.notes.push_back(why_not_weighted(fit, points));
   return {std::move(fit), std::move(points), std::move(columns)};

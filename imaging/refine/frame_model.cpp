@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "core/median.hpp"
@@ -25,6 +26,21 @@ double starting_variance(const Prepared& image, const RefineOptions& options, do
   return std::max(sharp, begin * begin);
 }
 
+/// The pixels that a fit must not use: the walls, and out of focus what their blurred edges still darken. The
+/// mask ends about two blurs from the edge of a wall, where 2 % of its darkness is left. Of a sharp wall the
+/// next pixel is clear. Beads that touched a wall out of focus lay off by three of their errors. Where the
+/// blur is wide for the beads, nothing is left out, because their rims at the wall would be lost.
+cv::Mat1b walls_and_their_tails(const Prepared& image, double smallest_px) {
+  constexpr double kSharp = 1.1;      // px
+  constexpr double kOfRadius = 0.25;  // at most
+  const double seen = blur_of(image.darkness);
+  if (seen <= kSharp || seen > kOfRadius * smallest_px) return image.opaque;
+  const int width = 2 * cvRound(seen) + 1;
+  cv::Mat1b wider;
+  cv::dilate(image.opaque, wider, cv::getStructuringElement(cv::MORPH_ELLIPSE, {width, width}));
+  return wider;
+}
+
 }  // namespace
 
 FrameModel::FrameModel(const Prepared& frame, double radius_px, const RefineOptions& fit_options)
@@ -38,7 +54,7 @@ FrameModel::FrameModel(const Prepared& frame, double radius_px, const RefineOpti
   picture.adjustROI(0, 0, 0, kSpareColumns);
   if (image.opaque.empty()) return;
   take_picture(picture.clone());
-  picture.colRange(0, size.width).setTo(kUnseen, image.opaque);
+  picture.colRange(0, size.width).setTo(kUnseen, walls_and_their_tails(image, priors.smallest()));
 }
 
 void FrameModel::add(const Proposal& p) {

@@ -330,7 +330,8 @@ def test_trajectories_and_scenes_are_pickled(tmp_path, sim_file, scene_file):
     for t in (0, len(run) - 1):
         assert np.array_equal(same.positions[t], run.positions[t])
         assert np.array_equal(same.velocities[t], run.velocities[t])
-        assert np.array_equal(same.contacts[t]["normal_force"], run.contacts[t]["normal_force"])
+        # A file holds the forces of contacts in single precision.
+        assert np.allclose(same.contacts[t]["normal_force"], run.contacts[t]["normal_force"], rtol=1e-6)
     assert twincell.analyze(same, ["s_b"])["s_b"].value == twincell.analyze(run, ["s_b"])["s_b"].value
 
 

@@ -89,7 +89,7 @@ TEST(MissingBeads, NoPhaseNoVelocityNoPlate) {
 TEST(MissingBeads, ACellThatIsPeriodicAlongZHasNoPlateAndNoPhase) {
   MemoryTrajectory bed = test::rigid_bed({.gamma = 2.5});
   bed.info().box.boundary[2] = Boundary::periodic;
-  for (const char* name : {"s_b", "s_c", "drift", "phase"})
+  for (const char* name : {"s_b", "s_c", "drift", "phase", "h_cm", "delta_h_cm", "p_s"})
     EXPECT_NE(find_result(analyze(bed), name).absent.find("periodic along z"), std::string::npos) << name;
 }
 

@@ -257,6 +257,27 @@ TEST(Fits, RareCountsGiveTheirLawWithoutBias) {
   }
 }
 
+// Tables with a count far above the curve, and with a probability of 1 at the border of the law. The outside
+// numbers are minima of -ln L by scipy.optimize 1.10.
+TEST(Fits, TheLikelihoodIsAtItsMaximum) {
+  const std::vector<DataPoint> six = {{1, 0.01, 0, 100},   {1.5, 0.02, 0, 100}, {2, 0.03, 0, 100},
+                                      {2.5, 0.03, 0, 100}, {3, 0.2, 0, 100},    {4, 0.3, 0, 100}};
+  const auto fitted = [](const std::vector<DataPoint>& points) {
+    CurveFit fit = fit_curve(law_named("arrhenius"), points);
+    EXPECT_TRUE(fit.likelihood);
+    return fit;
+  };
+  const auto energy = [](const CurveFit& fit) { return fit.fit.values[fit.fit.names[0] == "E_b" ? 0 : 1]; };
+  const CurveFit of_six = fitted(six);
+  test::validate({"V5.8", "E_b of six counts by maximum likelihood", 7.50616, 1e-5, "scipy"}, energy(of_six));
+  test::validate({"V5.8", "correlation of the six frequencies with the curve", 0.957, 1e-3, "numpy"},
+                 of_six.correlation);
+  std::vector<DataPoint> with_certain = six;
+  with_certain.push_back({5, 1, 0, 100});
+  test::validate({"V5.8", "E_b of the same and a probability of 1", 13.793, 1e-3, "scipy"},
+                 energy(fitted(with_certain)));
+}
+
 TEST(Fits, PointsWithoutLogarithmAreCountedAndGetLimits) {
   const std::vector<DataPoint> points = {{0.5, 0, 0, 1e5},
                                          {4, std::exp(-7.0 / 4), 0, 1e5},

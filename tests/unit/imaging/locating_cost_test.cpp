@@ -90,7 +90,6 @@ TEST(LocatingCost, FitsAreAtTheBoundAndFindersAreNot) {
     EXPECT_LE(p.rms, 1.3 * p.bound);
   }
   EXPECT_NEAR(all[3].bound / all[0].bound, 51 / 18.5, 0.05);  // apart from rounding to 8 bits
-  EXPECT_GT(all[4].seconds, all[0].seconds);
 }
 
 }  // namespace

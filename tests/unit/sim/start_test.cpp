@@ -295,6 +295,23 @@ TEST(Random, TheFractionSetsTheColumn) {
       "start.fraction", "needs a column of 157.1 sigma, but the cell ends at 30");
 }
 
+// With these seeds the first beads lie so that the last find no room.
+TEST(Random, ASmallCellBeginsAnewUntilAllBeadsHaveRoom) {
+  for (const char* seed : {"8097129745161049", "2862574063938275"}) {
+    const Scene s = scene(
+        kFlat, {"cell.width=6", "beads.count=12", "start.kind=random", std::string("start.seed=") + seed});
+    const auto beads = random_deposit(s).beads;
+    EXPECT_GE(smallest_gap(beads, s), -1e-12) << seed;
+    EXPECT_LE(deepest_in_wall(beads, s), 1e-8) << seed;
+  }
+  expect_refusal<ConfigError>(
+      [] {
+        random_deposit(scene(kFlat, {"cell.width=6", "beads.count=12", "start.kind=random", "cell.height=2.5",
+                                     "cell.lid=wall"}));
+      },
+      "beads.count", "they would take 63 % of it below 2.5 sigma");
+}
+
 TEST(Random, ManyBeadsInSpaceTakeNoTime) {
   const Scene s = scene(kSpace, {"cell.width=30", "cell.depth=30", "beads.count=30000", "start.kind=random",
                                  "start.velocity_scale=3"});

@@ -23,7 +23,8 @@ constexpr const char* kResults = R"({"format": "twincell sweep 1", "plan": "", "
      "results": {"phase": {"value": "bouncing"}}},
     {"id": "c", "conditions": {"n_l": 20, "gamma": 9.0, "start": "random"}, "failed": "an overlap"}],
    "onsets": [
-    {"conditions": {"n_l": 20, "start": "random"}, "key": "drive.gamma", "verdict": "convecting", "value": 2.1,
+    {"axes": {"beads.layers": 20, "drive.omega": 2.0, "start.kind": "random"},
+     "conditions": {"n_l": 20, "start": "random"}, "key": "drive.gamma", "verdict": "convecting", "value": 2.1,
      "low": 2.0, "high": 2.3, "runs": 12, "yes": 5},
     {"conditions": {"n_l": 20, "start": "crystal_a"}, "key": "drive.peak_acceleration_g",
      "verdict": "convecting", "value": null, "low": 2.9, "high": null, "runs": 9, "yes": 0},
@@ -42,7 +43,7 @@ void check(const analysis::Comparison& c) {
   EXPECT_DOUBLE_EQ(c.boundaries[0].gamma().value(), 2.1);  // as fitted, not the middle of its interval
   EXPECT_NEAR(c.boundaries[0].half_width().value(), 0.15, 1e-12);
   EXPECT_EQ(c.boundaries[0].n_runs, 12U);
-  EXPECT_EQ(analysis::boundary_of(c.boundaries[0]), "sweep (random)");
+  EXPECT_EQ(analysis::boundary_of(c.boundaries[0]), "sweep (random, drive.omega = 2)");
   EXPECT_FALSE(c.boundaries[1].gamma());
   EXPECT_EQ(analysis::boundary_text(c.boundaries[1]), "above 2.9");
 }
