@@ -171,7 +171,7 @@ TEST(Crystal, SaysWhenItDoesNotFit) {
     set.push_back(std::string("start.kind=") + kind);
     const std::string said = complaint([&] { make_start(scene(kFlat, set)); });
     expect_says(said, "scene.toml: beads.count: ");
-    expect_says(said, "in a cell 20 wide, 12 high.");
+    expect_says(said, "in a cell 20 wide, 12 high");
   }
   auto closing = low;
   closing[1] = "cell.side_tilt=-30";

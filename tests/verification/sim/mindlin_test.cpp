@@ -1,4 +1,4 @@
-// Hertzian contacts with Mindlin's tangential stiffness (docs/validation.md: V2.17).
+// Hertzian contacts with Mindlin's tangential stiffness (docs/validation.md: V2.18).
 
 #include "sim/laws/tangential/mindlin.hpp"
 
