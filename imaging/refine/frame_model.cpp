@@ -15,12 +15,12 @@ namespace {
 /// Blur with which the fit begins, px^2. Out of focus: with a small starting blur the fit would first use
 /// sharp rims and estimate light and sizes from their residuals. With the whole measured blur, centres that
 /// are a third of a radius off would not converge.
-double starting_variance(const Prepared& image, const RefineOptions& options, double smallest_px) {
+double starting_variance(double seen, const RefineOptions& options, double smallest_px) {
   constexpr double kLens = 0.8, kPixel = 1.0 / 12;  // a sharp lens, px; the width of a pixel, px^2
   constexpr double kOutOfFocus = 1.3;               // px
   constexpr double kOfRadius = 0.2;
   if (options.blur_px > 0) return options.blur_px * options.blur_px;
-  const double sharp = kLens * kLens + kPixel, seen = blur_of(image.darkness);
+  const double sharp = kLens * kLens + kPixel;
   if (seen <= kOutOfFocus) return sharp;
   const double begin = std::min(seen, kOfRadius * smallest_px);
   return std::max(sharp, begin * begin);
@@ -30,10 +30,9 @@ double starting_variance(const Prepared& image, const RefineOptions& options, do
 /// mask ends about two blurs from the edge of a wall, where 2 % of its darkness is left. Of a sharp wall the
 /// next pixel is clear. Beads that touched a wall out of focus lay off by three of their errors. Where the
 /// blur is wide for the beads, nothing is left out, because their rims at the wall would be lost.
-cv::Mat1b walls_and_their_tails(const Prepared& image, double smallest_px) {
+cv::Mat1b walls_and_their_tails(const Prepared& image, double seen, double smallest_px) {
   constexpr double kSharp = 1.1;      // px
   constexpr double kOfRadius = 0.25;  // at most
-  const double seen = blur_of(image.darkness);
   if (seen <= kSharp || seen > kOfRadius * smallest_px) return image.opaque;
   const int width = 2 * cvRound(seen) + 1;
   cv::Mat1b wider;
@@ -50,11 +49,13 @@ FrameModel::FrameModel(const Prepared& frame, double radius_px, const RefineOpti
       noise(noise_of(frame.darkness)),
       priors(radius_px, fit_options),
       picture(frame.darkness) {
-  blur.variance = starting_variance(image, options, priors.smallest());
+  const bool measures = options.blur_px <= 0 || !image.opaque.empty();
+  const double seen = measures ? blur_of(image.darkness) : 0;  // px, of the picture
+  blur.variance = starting_variance(seen, options, priors.smallest());
   picture.adjustROI(0, 0, 0, kSpareColumns);
   if (image.opaque.empty()) return;
   take_picture(picture.clone());
-  picture.colRange(0, size.width).setTo(kUnseen, walls_and_their_tails(image, priors.smallest()));
+  picture.colRange(0, size.width).setTo(kUnseen, walls_and_their_tails(image, seen, priors.smallest()));
 }
 
 void FrameModel::add(const Proposal& p) {

@@ -14,20 +14,24 @@ namespace twincell::sim {
 
 namespace {
 
-/// Height of the column of which the beads take the share Scene::fraction, but at least six radii.
-/// \throws ConfigError if a stated share has no effect or does not fit below the ceiling
-double column_height(const Scene& scene, const std::vector<double>& radii) {
+/// Area of the beads and the intruder; in 3D their volume.
+double size_of_all(const Scene& scene, const std::vector<double>& radii) {
   const bool flat = scene.dimension == 2;
   const double r = scene.radius, powers = flat ? 2 : 3;
   double in_beads = 0;  // total size, in beads of radius r
   for (const double radius : radii) in_beads += std::pow(radius / r, powers);
   if (scene.intruder) in_beads += std::pow(scene.intruder->radius / r, powers);
-  const double filled =
-      flat ? in_beads * std::numbers::pi * r * r / (scene.fraction.value_or(0.4) * scene.width)
-           : in_beads * 4 / 3 * std::numbers::pi * r * r * r /
-                 (scene.fraction.value_or(0.25) * scene.width * scene.depth);
+  return flat ? in_beads * std::numbers::pi * r * r : in_beads * 4 / 3 * std::numbers::pi * r * r * r;
+}
+
+/// Height of the column of which the beads take the share Scene::fraction, but at least six radii.
+/// \throws ConfigError if a stated share has no effect or does not fit below the ceiling
+double column_height(const Scene& scene, const std::vector<double>& radii) {
+  const double filled = size_of_all(scene, radii) /
+                        (scene.dimension == 2 ? scene.fraction.value_or(0.4) * scene.width
+                                              : scene.fraction.value_or(0.25) * scene.width * scene.depth);
   const double needed =
-      std::max({6 * r, filled, scene.intruder ? scene.intruder->z + scene.intruder->radius : 0.0});
+      std::max({6 * scene.radius, filled, scene.intruder ? scene.intruder->z + scene.intruder->radius : 0.0});
   const double ceiling = ceiling_of(scene);
   const bool fills_cell = scene.g() == 0 && std::isfinite(ceiling);
   if (scene.fraction && fills_cell)
@@ -104,11 +108,8 @@ Start random_deposit(const Scene& scene, Progress& progress) {
   constexpr int kAttempts = 10;
   for (int attempt = 0; attempt < (n <= kSmall ? kAttempts : 1); ++attempt)
     if (place_all()) return start;
-  double taken = 0;
-  for (const double r : radii)
-    taken += scene.dimension == 2
-                 ? std::numbers::pi * r * r / (scene.width * height)
-                 : 4 * std::numbers::pi / 3 * r * r * r / (scene.width * scene.depth * height);
+  const double base = scene.dimension == 2 ? scene.width : scene.width * scene.depth,
+               taken = size_of_all(scene, radii) / (base * height);
   throw ConfigError(
       scene.where("beads.count"),
       fmt::format("{} beads cannot be placed at random in {}: they would take {:.0f} % of it below "
