@@ -44,7 +44,8 @@ class StressField : public Observable {
     for (const ContactForce& c : frame.contact_forces) {
       const Vec3 end = frame.position[static_cast<std::size_t>(c.i)] - plate * Vec3::UnitZ();
       if (const Vec3 branch = branch_vector(c, info_);
-          end.allFinite() && std::abs(end.z()) / row_height_ * static_cast<double>(columns_) < kMostPoints)
+          end.allFinite() && (rows_of_period_ > 0 ||
+                              std::abs(end.z()) / row_height_ * static_cast<double>(columns_) < kMostPoints))
         add_contact(end, branch, c.force());
     }
     ++frames_;
