@@ -56,7 +56,8 @@ Figure figure_of(const std::string& name, const std::vector<Window>& windows, co
   f.height = 400;
   const Result& first = find_result(windows.front().results, name);
   std::string unit = first.unit.empty() || first.unit == "1" ? "" : "/" + first.unit;
-  if (const std::size_t sigma = unit.find("sigma"); sigma != std::string::npos) unit.replace(sigma, 5, "σ");
+  if (const std::size_t sigma = unit.find("sigma"); sigma != std::string::npos)
+    unit = unit.substr(0, sigma) + "σ" + unit.substr(sigma + 5);
   figure_style::Axis x{.label = abscissa.label}, y{.label = gnuplot_symbol(name) + unit};
   bool both[2] = {false, false};
   for (const bool falls : {false, true}) {

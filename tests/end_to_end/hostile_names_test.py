@@ -25,14 +25,10 @@ except ImportError:  # Python before 3.11
 
 HARMLESS = b"plain"
 HOSTILE = [
-    b"<img src=x onerror=alert(1)>",
-    b"x'.system(\"touch PWNED\").'",
-    b"$(touch PWNED) `touch PWNED`",
-    b"a\";touch PWNED;\"&touch PWNED",
-    b"two\nlines = 1\n[PWNED]",
+    # A page, gnuplot, a terminal and the shell; the first goes through every verb, as it takes a minute.
+    b"<img src=x onerror=alert(1)><b>\x1b]0;PWNED\x07x'.system(\"touch PWNED\").'$(touch PWNED)`touch PWNED`a\";touch PWNED;\"&touch PWNED",
+    b"two\nlines = 1\n[PWNED] %{x} {@b} a_b^c &~ \\",
     b"\xff\xfe no text",
-    b"%{x} {@b} a_b^c &~ \\",
-    b"<b>\x1b]0;PWNED\x07",
 ]
 SCENE = ("preset = \"fortini-huang-2015\"\n[beads]\nlayers = 3\n[cell]\nwidth = 8\n[drive]\ngamma = 1.5\n"
          "[time]\ncycles = 2\ndiscard = 0\n")
@@ -196,9 +192,9 @@ def main():
         folder = pathlib.Path(tempfile.mkdtemp(prefix="hostile-", dir=scratch))
         try:
             session = Session(program, name, folder)
-            session.all_verbs(thorough=k < 4)
+            session.all_verbs(thorough=k < 2)
             tags[name] = session.look()
-            if k >= 4 or name == HARMLESS:
+            if k >= 2 or name == HARMLESS:
                 continue
             if tags[name] != tags[HARMLESS]:
                 fault(name, f"other tags in pages: {tags[name] - tags[HARMLESS]}, missing "

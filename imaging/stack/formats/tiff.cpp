@@ -315,7 +315,7 @@ class Pages final : public FrameSource {
   void read_bits() {
     if (!is_plain()) {
       info_.bits = 8;
-      info_.notes.push_back("palette, separate planes or fewer than 8 bits: rendered as 8 bit.");
+      info_.notes.emplace_back("palette, separate planes or fewer than 8 bits: rendered as 8 bit.");
       return;
     }
     if (field(TIFFTAG_SAMPLEFORMAT) == SAMPLEFORMAT_IEEEFP || field(TIFFTAG_SAMPLEFORMAT) == SAMPLEFORMAT_INT)
