@@ -36,8 +36,13 @@ class CollisionWithMemory {
     double t = time;
     mode_ = entered(t, y);
     note(y, t, end);
+    // Where the force of a law is no polynomial of the overlap, steps that grow from the touch and shrink
+    // towards the parting resolve it. A thousandth of a step is short enough: 1e-8 of the velocities.
+    const bool root = begins_as_root(look(t, y));
+    const double least_step = 1e-3 * longest;
     while (t < last) {
       double first = std::min(longest, last - t);
+      if (root) first = std::min(first, graded(t - time, y, least_step));
       State whole = step(t, y, first);
       // The first event within the step. F_n = 0 is tested before the Coulomb limit, which is 0 there:
       // otherwise a force that jumps over the limit would be missed.
@@ -139,11 +144,29 @@ class CollisionWithMemory {
     m.push = set_.wall ? Vec3(set_.pull + set_.swing * std::sin(set_.omega * t)) : Vec3(Vec3::Zero());
     return m;
   }
+  /// Whether the force begins at 0 and not in proportion to the overlap, as that of Hertz.
+  [[nodiscard]] bool begins_as_root(const Instant& m) const {
+    const double small = 1e-6 * set_.reach, once = normal_force(small, m.v_n),
+                 twice = normal_force(2 * small, m.v_n);
+    return m.overlap < small && normal_force(0, m.v_n) == 0 && std::abs(twice / once - 2) > 0.01;
+  }
+  /// Longest step where the force is a root of the overlap. \param since time since the touch
+  [[nodiscard]] double graded(double since, const State& y, double least_step) const {
+    constexpr double kShare = 0.5;
+    const Instant m = look(0, y);
+    const double left = m.v_n > 0 ? m.overlap / m.v_n : HUGE_VAL;
+    return std::max(least_step, kShare * std::min(since, left));
+  }
   [[nodiscard]] double limit(const Instant& m) const { return mu_ * std::abs(m.f_n); }
   /// Forces below this count as zero. Friction without a limit (mu = 1e9, for example) is then not cut at the
   /// instant at which F_n vanishes.
   [[nodiscard]] double least() const { return kLeast * mu_ * largest_; }
   [[nodiscard]] Vec3 sticking_force(const Instant& m) const { return -k_t_ * m.x - eta_t_ * m.v_t; }
+  /// Bound of the rounding of the sticking force, whose parts cancel where a contact begins without a normal
+  /// force. Its direction is then no direction.
+  [[nodiscard]] double rounding(const Instant& m) const {
+    return 1e-12 * (k_t_ * m.x.norm() + eta_t_ * m.v_t.norm());
+  }
   static Vec3 cut(const Vec3& f, double most) {
     const double size = f.norm();
     return size > most ? Vec3(f * (most / size)) : f;
@@ -227,7 +250,7 @@ class CollisionWithMemory {
         return (pressed_ == (m.f_n > 0) ? 1 : -1) * std::max(std::abs(m.f_n), 1e-300);
       case Event::hold:
         if (reading_ != SlipReading::spring_limited || mode_ == Mode::slide || mode_ == Mode::loose) return 1;
-        return std::max(limit(m), least()) - k_t_ * m.x.norm();
+        return std::max({limit(m), least(), rounding(m)}) - k_t_ * m.x.norm();
       case Event::limit:
         break;
       case Event::none:
@@ -235,7 +258,7 @@ class CollisionWithMemory {
     }
     switch (mode_) {
       case Mode::stick:
-        return std::max(limit(m), least()) - sticking_force(m).norm();
+        return std::max({limit(m), least(), rounding(m)}) - sticking_force(m).norm();
       case Mode::clip:
         return sticking_force(m).norm() - limit(m);
       case Mode::slide: {
@@ -257,8 +280,10 @@ class CollisionWithMemory {
 
   // --- the mode after an event; the last three components of y are set for that mode ---
 
+  /// Sliding along a force; along -v_t if it is 0.
   Mode slide_along(const Vec3& force, State& y) {
-    put(force.normalized(), 3, y);
+    const Vec3 along = force.norm() > 0 ? force : Vec3(-look(0, y).v_t);
+    put(along.normalized(), 3, y);
     return Mode::slide;
   }
   /// Mode after the force has reached the limit: sliding, or sticking if the limit grows faster than the

@@ -15,7 +15,7 @@
 #include "core/provenance.hpp"
 #include "sim/run/simulation.hpp"
 #include "sim/scene/make_plan.hpp"
-#include "sim/scene/plate_motion.hpp"
+#include "sim/start/start.hpp"
 
 namespace twincell::sim {
 
@@ -472,12 +472,9 @@ LammpsDeck lammps_deck(const Scene& scene, const TrajectorySource& trajectory, s
            fmt::format("phase {}/{} of {} falls between two of the cycle's {} steps.", frame.phase,
                        info.phases_per_cycle, name, m.steps_per_period));
   m.first_step = steps / info.phases_per_cycle;
-  const double ours =
-      m.drive.displacement(static_cast<double>(m.first_step) / static_cast<double>(m.steps_per_period));
-  if (!plate_agrees(scene, frame.plate_height, ours))
-    refuse(scene, "drive",
-           fmt::format("the plate of {} is at {:g}, but this drive puts it at {:g}.", name,
-                       frame.plate_height, ours));
+  const double phase = static_cast<double>(m.first_step) / static_cast<double>(m.steps_per_period);
+  if (const std::string complaint = displaced_wall(scene, info, frame, phase); !complaint.empty())
+    refuse(scene, "drive", name + complaint);
   m.beads = beads;
   return deck_of(m, scene, plan);
 }

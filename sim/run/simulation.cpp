@@ -107,14 +107,32 @@ double kinetic_energy_per_bead(const System& s) {
   return s.beads.empty() ? 0 : sum / static_cast<double>(s.beads.size());
 }
 
+namespace {
+/// Refuses a run that begins after the last frame of its only cycle.
+void require_frames(const Scene& scene, const Plan& plan, double phase) {
+  if (plan.cycles_before > 0 || scene.cycles > 1 ||
+      first_step(plan, phase) * scene.phases <= (scene.phases - 1) * plan.steps_per_period)
+    return;
+  throw ConfigError(
+      scene.where("time.cycles"),
+      fmt::format("records no frame: the run begins at phase {:g} of its only cycle, after the last of its "
+                  "{} frames; at least 2 cycles.",
+                  phase, scene.phases));
+}
+}  // namespace
+
 RunState placed(const Scene& scene, Progress& progress) {
   // An impossible run is refused before ten million beads are placed.
   const Plan plan = make_plan(scene);
   require_memory(scene, plan, scene.n_beads.value_or(0));
+  require_frames(scene, plan, scene.phase.value_or(0));
   Start start = make_start(scene, progress);
   const double phase = start.phase.value_or(scene.phase.value_or(0));
-  const Vec3 plate = scene.in_motion ? scene.drive.displacement_in_space(phase) : Vec3::Zero();
+  const Vec3 plate = scene.in_motion
+                         ? Vec3(scene.envelope.at(phase) * scene.drive.displacement_in_space(phase))
+                         : Vec3::Zero();
   require_sound(start.beads, scene, 0.05, progress, plate);
+  require_frames(scene, plan, phase);
   RunState state;
   // High enough never to be reached: top of the bed, stroke of the plate, twice the ballistic height at the
   // peak plate velocity, ten diameters.
@@ -335,7 +353,8 @@ Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
     for (std::size_t i = 0; i < n; ++i) {
       frame.force.push_back(known ? Vec3(system_.forces[i].x, system_.forces[i].y, system_.forces[i].z)
                                   : unknown);
-      frame.moment.push_back(known ? Vec3(system_.forces[i].q_x, system_.forces[i].q, system_.forces[i].q_z)
+      // With the signs of the spin above: Force::q turns Bead::spin, and its other components, backwards.
+      frame.moment.push_back(known ? Vec3(-system_.forces[i].q_x, system_.forces[i].q, -system_.forces[i].q_z)
                                    : unknown);
       frame.rim_speed.push_back(system_.rim_speeds.size() == n ? system_.rim_speeds[i] : unknown);
     }

@@ -15,12 +15,19 @@ inline bool plate_follows_drive(const Scene& scene) {
   return scene.drive.axis != Axis::z || scene.bottom != Edge::wall || scene.bottom_moves;
 }
 
-/// Whether the stored Frame::plate_height `stored` is what a run of the scene stores at the displacement
-/// `displacement` of its drive, both in sigma: equal to 1e-9, or 0 if the plate rests. NaN, unknown, agrees.
+/// Largest difference of two displacements that are the same one, sigma.
+inline constexpr double kSameDisplacement = 1e-9;
+
+/// The Frame::plate_height that a run of the scene stores at the displacement `displacement` of its drive,
+/// sigma.
+inline double stored_plate_height(const Scene& scene, double displacement) {
+  return plate_follows_drive(scene) ? displacement : 0;
+}
+
+/// Whether the Frame::plate_height of a file is the one that a run of the scene stores. NaN, unknown, agrees.
 inline bool plate_agrees(const Scene& scene, double stored, double displacement) {
-  constexpr double kSamePlate = 1e-9;
-  return std::isnan(stored) || std::abs(stored - displacement) <= kSamePlate ||
-         (!plate_follows_drive(scene) && stored == 0);
+  return std::isnan(stored) ||
+         std::abs(stored - stored_plate_height(scene, displacement)) <= kSameDisplacement;
 }
 
 }  // namespace twincell::sim

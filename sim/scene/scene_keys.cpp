@@ -160,12 +160,14 @@ void add_contact(Rows& rows) {
                   "and the dashpot is dropped; force-clipped: the limit applies to the force and the spring "
                   "continues to stretch; mindlin: no dashpot, stiffness from the overlap (Hertz–Mindlin), "
                   "without memory of the normal load"});
-  rows.push_back({"contact.rolling",
-                  "",
-                  "\"none\"",
-                  "\"spring\"",
-                  "spring: torsional spring, dashpot and limit; not with tangential = \"none\"",
-                  {"contact.k_r=1e3", "contact.mu_r=0.1"}});
+  rows.push_back(
+      {"contact.rolling",
+       "",
+       "\"none\"",
+       "\"spring\"",
+       "spring: torsional spring, dashpot and limit; in 3D twisting about the normal counts as rolling, "
+       "and the spring does not turn with a pair; not with tangential = \"none\"",
+       {"contact.k_r=1e3", "contact.mu_r=0.1"}});
   rows.push_back({"contact.overlap_bound", "bead diameter", "0.1", "0.05",
                   "deepest overlap that does not stop the run, in diameters of the median bead"});
   const std::vector<std::string> hertz = {"contact.normal=hertz"},

@@ -105,10 +105,10 @@ Start make_start(const Scene& scene, Progress& progress) {
     require_sound(start.beads, scene, kRefused, progress);
     if (const double left = relax_overlaps(start.beads, scene, kTolerated, 50000, progress);
         left > kTolerated)
-      throw ConfigError(scene.where("start.relax"),
-                        fmt::format("the beads cannot be pushed apart, an overlap of {:.3g} sigma remains, "
-                                    "the bound is {:g}; is there room for them?",
-                                    left, kTolerated));
+      throw NoRoom(scene.where("start.relax"),
+                   fmt::format("the beads cannot be pushed apart, an overlap of {:.3g} sigma remains, "
+                               "the bound is {:g}; is there room for them?",
+                               left, kTolerated));
   }
   if (scene.perturbation == 0) return start;
   std::mt19937_64 engine = engine_of(scene, Stream::perturbation);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/error.hpp"
 #include "core/progress.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/system/system.hpp"
@@ -22,6 +23,12 @@ struct Start {
   std::vector<Vec3> rim_speeds = {};
   /// Drive phase of the frame from which a start in motion continues, in cycles.
   std::optional<double> phase = {};
+};
+
+/// A start has no room for its beads. Another seed, or another cell, may have it.
+class NoRoom : public ConfigError {
+ public:
+  using ConfigError::ConfigError;
 };
 
 /// Radii of the beads, drawn with the seed of the scene; without a size spread all are equal.
@@ -49,6 +56,12 @@ Start crystal_b(const Scene& scene, Progress& progress = Progress::none());
 /// velocities; they fall during settling. Without gravity they fill the cell.
 /// \throws ConfigError if too few free positions are found
 Start random_deposit(const Scene& scene, Progress& progress = Progress::none());
+/// Why the walls of a scene that begins at `phase` of its drive would not be where they are in a frame;
+/// begins with " has". Empty if they are, or if the file does not state it. The file's own scene states which
+/// of its walls moved; without it, those that move here. A bed in contact with a wall that jumps is thrown
+/// off.
+std::string displaced_wall(const Scene& scene, const TrajectoryInfo& info, const Frame& frame, double phase);
+
 /// Frame `scene.frame` of `scene.from`: positions relative to the plate, without empty slots, velocities set
 /// to 0. With scene.in_motion everything is kept: positions, velocities, spins, the phase of the drive, and
 /// the contact memories if the frame contains them.

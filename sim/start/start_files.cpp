@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include "core/error.hpp"
 #include "core/table_text.hpp"
 #include "sim/scene/plate_motion.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sim/start/start.hpp"
 #include "sim/start/start_parts.hpp"
 #include "trajectory/formats/h5md_file.hpp"
@@ -33,6 +35,20 @@ void require_positive(const Scene& scene, const std::vector<double>& column, con
       throw InputError(
           {scene.from.string(), 0, 0, name},
           fmt::format("{} of bead {} is out of range; the value must be greater than 0.", column[i], i));
+}
+
+/// The scene of the run that wrote a file; nullopt if the file does not state it, or not in a form of this
+/// version.
+std::optional<Scene> scene_of_file(const Scene& scene, const TrajectoryInfo& info) {
+  const nlohmann::json provenance = nlohmann::json::parse(info.provenance_json, nullptr, false);
+  if (!provenance.is_object() || !provenance.contains("config") || !provenance["config"].is_string())
+    return {};
+  try {
+    return read_scene_text(provenance["config"].get<std::string>(), scene.from.string(), {},
+                           scene.from.parent_path());
+  } catch (const Error&) {
+    return {};
+  }
 }
 
 /// Start in motion: continues from a frame without changes.
@@ -81,22 +97,51 @@ Start start_in_motion(const Scene& scene, const TrajectoryInfo& info, const Fram
                               .z = frame.force[i].z(),
                               .q = frame.moment[i].y(),
                               .y = frame.force[i].y(),
-                              .q_x = frame.moment[i].x(),
-                              .q_z = frame.moment[i].z()});
+                              .q_x = -frame.moment[i].x(),
+                              .q_z = -frame.moment[i].z()});
   if (all_known(frame.rim_speed)) start.rim_speeds = frame.rim_speed;
   // The drive must put the plate where the frame has it.
   start.phase = scene.phase ? *scene.phase : static_cast<double>(frame.phase) / info.phases_per_cycle;
-  if (const double plate = scene.drive.displacement(*start.phase);
-      !plate_agrees(scene, frame.plate_height, plate))
-    refuse(
-        fmt::format(" has its plate at {:g} sigma, but this drive puts it at {:g}; to change the amplitude, "
-                    "start at a frame of phase 0.",
-                    frame.plate_height, plate));
+  if (const std::string complaint = displaced_wall(scene, info, frame, *start.phase); !complaint.empty())
+    refuse(complaint);
   require_count(scene, start.beads.size(), name);
   return start;
 }
 
 }  // namespace
+
+std::string displaced_wall(const Scene& scene, const TrajectoryInfo& info, const Frame& frame, double phase) {
+  if (std::isnan(frame.plate_height)) return {};
+  const double stroke = scene.envelope.at(phase);
+  const Vec3 here = stroke * scene.drive.displacement_in_space(phase);
+  if (const double plate = stroke * scene.drive.displacement(phase);
+      !plate_agrees(scene, frame.plate_height, plate))
+    return fmt::format(
+        " has its plate at {:g} sigma, but this drive puts it at {:g}; to change the amplitude, "
+        "start at a frame in which both are at 0.",
+        frame.plate_height, stored_plate_height(scene, plate));
+  const std::optional<Scene> written = scene_of_file(scene, info);
+  // A plate at rest is stored at 0, from which the displacement of other walls does not follow.
+  if (!info.drive || !plate_follows_drive(written ? *written : scene) || frame.phase < 0 ||
+      info.phases_per_cycle <= 0)
+    return {};
+  // The envelope of a run is 1 in all frames that it records.
+  Vec3 there = frame.plate_height * Vec3::Unit(static_cast<int>(info.drive->axis));
+  there.x() += info.drive->horizontal_displacement(static_cast<double>(frame.phase) / info.phases_per_cycle);
+  for (const Wall& wall : scene.walls()) {
+    bool moved = wall.moves;
+    if (written)
+      for (const Wall& other : written->walls())
+        if (other.name == wall.name) moved = other.moves;
+    const double now = wall.moves ? wall.n.dot(here) : 0, then = moved ? wall.n.dot(there) : 0;
+    if (std::abs(now - then) > kSameDisplacement)
+      return fmt::format(
+          " has the {} wall {:g} sigma from its mean position, but this scene begins with it at {:g}; "
+          "start at a frame in which both agree.",
+          wall.name, then, now);
+  }
+  return {};
+}
 
 Start from_trajectory(const Scene& scene, Progress& progress) {
   const H5mdReader file(scene.from);

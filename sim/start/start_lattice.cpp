@@ -42,9 +42,9 @@ Start fill_lattice(const Scene& scene, const std::vector<double>& radii, double 
     });
     empty = start.beads.size() > before ? 0 : empty + 1;
     if (empty > most_empty)
-      throw ConfigError(scene.where("beads.count"),
-                        fmt::format("only {} of {} beads fit on the lattice in {}.", start.beads.size(),
-                                    radii.size(), describe_cell(scene)));
+      throw NoRoom(scene.where("beads.count"),
+                   fmt::format("only {} of {} beads fit on the lattice in {}.", start.beads.size(),
+                               radii.size(), describe_cell(scene)));
   }
   if (scene.intruder) start.beads.push_back(intruder_of(scene));
   return start;

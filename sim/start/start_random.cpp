@@ -110,12 +110,11 @@ Start random_deposit(const Scene& scene, Progress& progress) {
     if (place_all()) return start;
   const double base = scene.dimension == 2 ? scene.width : scene.width * scene.depth,
                taken = size_of_all(scene, radii) / (base * height);
-  throw ConfigError(
-      scene.where("beads.count"),
-      fmt::format("{} beads cannot be placed at random in {}: they would take {:.0f} % of it below "
-                  "{:.3g} sigma{}.",
-                  n, describe_cell(scene), 100 * taken, height,
-                  height < ceiling_of(scene) ? "; a smaller start.fraction makes that higher" : ""));
+  throw NoRoom(scene.where("beads.count"),
+               fmt::format("{} beads cannot be placed at random in {}: they would take {:.0f} % of it below "
+                           "{:.3g} sigma{}.",
+                           n, describe_cell(scene), 100 * taken, height,
+                           height < ceiling_of(scene) ? "; a smaller start.fraction makes that higher" : ""));
 }
 
 }  // namespace twincell::sim

@@ -16,6 +16,8 @@
 #include "sim/run/simulation.hpp"
 #include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
+#include "tests/support/put_file.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace twincell::sim {
 namespace {
@@ -350,6 +352,42 @@ double difference(const std::vector<Bead>& a, const std::vector<Bead>& b, std::s
         std::max({most, std::abs(a[i].vx - b[i].vx), std::abs(a[i].vy - b[i].vy), std::abs(a[i].vz - b[i].vz),
                   0.5 * std::abs(a[i].spin - b[i].spin), 0.5 * std::abs(a[i].spin_x - b[i].spin_x)});
   return most;
+}
+
+// A Hertz contact begins without a normal force, so the Coulomb limit begins at 0, and with it the sum of
+// spring and dashpot. Friction on a flat plate acts along -v_t, which never turns.
+TEST(Flights, AHertzContactBeginsToSlideAlongItsVelocity) {
+  const TemporaryFolder folder;
+  put_file(
+      folder / "one.csv",
+      "x,y,z,vx,vy,vz,spin_x,spin,spin_z\n2.0,2.0,0.7,0.16863,-0.45907,-1.62627,3.84862,-10.84514,0.16681\n");
+  const auto last = [&](const std::string& stepping, int n) {
+    Simulation run(scene_of(fmt::format(
+        "[cell]\ndimension = 3\nwidth = 100.0\ndepth = 100.0\nheight = 50.0\n[beads]\ncount = "
+        "1\n[contact]\nnormal = "
+        "\"hertz\"\ntangential = \"spring\"\nmu = 0.26138\nc_t = 16.86155\nk_t = 12068.51052\nyoungs_modulus "
+        "= "
+        "1e6\nviscous_time = 0.00011\n[drive]\namplitude = 0.0\nomega = 6.283185307179586\n[start]\nkind = "
+        "\"table\"\nfrom = \"{}\"\nin_motion = true\n[time]\ndiscard = 0\ncycles = 1\nphases = 20\nstepping "
+        "= "
+        "\"{}\"\nsteps_per_contact = {}\n",
+        (folder / "one.csv").string(), stepping, n)));
+    MemoryTrajectory t(run.trajectory_info());
+    run.run(t);
+    const Frame& f = t.frames().back();
+    return std::pair{f.velocity[0], f.spin[0]};
+  };
+  const auto [v, w] = last("event-driven", 100);
+  const auto [v_steps, w_steps] = last("steps", 4000);
+  // v_t = v + R w x n with n = z, before and after. The spin of a table is counter-clockwise, -w_y.
+  const Vec3 v_0(0.16863, -0.45907, 0), w_0(3.84862, 10.84514, 0.16681), arm(0, 0, -0.5);
+  Vec3 slip = v_0 + w_0.cross(arm), change = v - v_0;
+  slip.z() = change.z() = 0;
+  EXPECT_GT(change.norm(), 0.5);
+  EXPECT_NEAR(change.normalized().dot(slip.normalized()), -1, 1e-9);
+  EXPECT_NEAR(change.normalized().cross(slip.normalized()).norm(), 0, 1e-7);
+  EXPECT_NEAR((v - v_steps).norm(), 0, 1e-6);
+  EXPECT_NEAR((w - w_steps).norm(), 0, 1e-5);
 }
 
 // Three beads in contact move by time steps until they separate; the pair stays event-driven.

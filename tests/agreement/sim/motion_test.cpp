@@ -1,16 +1,19 @@
 // A run that continues another run from a stored frame, including the springs of its contacts; and drives
 // that start at any phase of their cycle.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
 #include <numbers>
 
+#include "core/provenance.hpp"
 #include "sim/run/simulation.hpp"
 #include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/complaint.hpp"
+#include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
@@ -149,6 +152,110 @@ TEST(InMotion, WhatOtherLawsRememberIsRefused) {
   expect_refusal<ConfigError>([&] { begin({"start.frame=60"}); }, "frame 60 was requested");
   expect_refusal<ConfigError>([&] { begin({"start.settle_limit=3"}); }, "start.settle_limit",
                               "keeps it moving");
+}
+
+// A wall that jumps by 0.03 sigma throws a bed at k_n = 1e6 up to 100 sigma high.
+TEST(InMotion, WallsThatWouldJumpAreRefused) {
+  const TemporaryFolder folder;
+  const auto bed = [](const std::string& drive) {
+    return "[cell]\nwidth = 5.0\n[beads]\ncount = 10\n[contact]\nk_n = 1e6\ngamma_n = 100.0\nk_t = "
+           "1e4\ngamma_t = "
+           "100.0\nmu = 0.6\n[time]\ndiscard = 1\ncycles = 1\nphases = 20\nsprings = "
+           "true\n[drive]\namplitude = "
+           "0.03\nomega = 5.0\n" +
+           drive;
+  };
+  const auto begin = [&](const std::string& drive, int frame, const std::vector<std::string>& more) {
+    std::vector<std::string> all{"start.kind=trajectory",
+                                 "start.from=" + (folder / (drive.empty() ? "z.h5" : "x.h5")).string(),
+                                 "start.frame=" + std::to_string(frame),
+                                 "start.in_motion=true",
+                                 "time.discard=0",
+                                 "time.cycles=2"};
+    all.insert(all.end(), more.begin(), more.end());
+    Simulation run(read_scene_text(bed(drive), "rest", all));
+  };
+  const std::string sideways = "axis = \"x\"\n";
+  for (const std::string& drive : {std::string(), sideways}) {
+    const Scene scene = read_scene_text(bed(drive), "bed");
+    MemoryTrajectory film_of_bed = film(scene);
+    TrajectoryInfo info = film_of_bed.info();
+    Provenance provenance;
+    provenance.config = scene.resolved;
+    info.provenance_json = provenance.to_json();
+    info.columns.contacts = true;
+    H5mdWriter writer(folder / (drive.empty() ? "z.h5" : "x.h5"), info);
+    for (const Frame& frame : film_of_bed.frames()) writer.append(frame);
+    writer.finish();
+  }
+  const std::string schedule = "drive.schedule=[[0.0,3.0],[1.0,1.0]]";
+  begin("", 5, {});
+  begin(sideways, 5, {});
+  expect_refusal<ConfigError>([&] { begin("", 5, {schedule}); }, "has its plate at 0.03", "puts it at 0.075");
+  expect_refusal<ConfigError>(
+      [&] {
+        begin("", 15, {"drive.start=ramp", "drive.ramp_cycles=1"});
+      },
+      "has its plate at -0.03", "puts it at -0.0225");
+  expect_refusal<ConfigError>([&] { begin("", 5, {"drive.horizontal.amplitude=0.04"}); },
+                              "has the left wall 0 sigma", "begins with it at 0.04");
+  expect_refusal<ConfigError>([&] { begin("", 15, {"cell.bottom_motion=rest"}); }, "has its plate at -0.03",
+                              "puts it at 0");
+  expect_refusal<ConfigError>([&] { begin(sideways, 5, {"cell.side_walls=rest"}); },
+                              "has the left wall 0.03 sigma", "begins with it at 0");
+  // At phase 0 all of them agree.
+  begin("", 0, {schedule});
+  begin("", 0, {"cell.bottom_motion=rest"});
+  begin(sideways, 0, {"cell.side_walls=rest"});
+}
+
+// I d(omega)/dt = R moment, with the angular velocities of the file.
+TEST(InMotion, TheMomentsOfAFileTurnItsBeads) {
+  const TemporaryFolder folder;
+  put_file(folder / "mo.csv", "x,y,z,vx,vy,vz,spin_x,spin,spin_z\n5,5,.6,.7,.4,-.5,.3,-.2,.1\n");
+  const MemoryTrajectory t = film(read_scene_text(
+      "[cell]\ndimension = 3\nwidth = 20.0\ndepth = 20.0\n[beads]\ncount = 1\n[contact]\nnormal = "
+      "\"linear\"\ntangential "
+      "= \"dashpot\"\nk_n = 1e4\ngamma_n = 200.0\nc_t = 1.0\nmu = 0.4\n[drive]\namplitude = 0.0\nomega = "
+      "3.14159265358979\n[start]\nkind = \"table\"\nfrom = \"" +
+          (folder / "mo.csv").string() +
+          "\"\nin_motion = true\n[time]\ndiscard = 0\ncycles = 1\nphases = 4000\nsprings = true\nstepping = "
+          "\"steps\"\nsteps_per_contact = 200.0\n",
+      "moment"));
+  const double inertia = 0.1, radius = 0.5;
+  const auto moment = [&](std::size_t f) {
+    const Vec3& m = t.frames()[f].moment[0];
+    return m.allFinite() ? m : Vec3(Vec3::Zero());  // not known before the first step
+  };
+  Vec3 turned = Vec3::Zero();  // by the torques of all contacts
+  for (std::size_t f = 1; f < t.frames().size(); ++f)
+    turned +=
+        0.5 * (moment(f - 1) + moment(f)) * (t.frames()[f].time - t.frames()[f - 1].time) * radius / inertia;
+  const Vec3 change = t.frames().back().spin[0] - t.frames().front().spin[0];
+  for (const int axis : {0, 1}) {
+    EXPECT_GT(std::abs(change[axis]), 0.05);
+    EXPECT_NEAR(turned[axis] / change[axis], 1, 0.02);
+  }
+}
+
+TEST(DrivePhase, ARunWithoutAFrameIsRefused) {
+  const TemporaryFolder folder;
+  put_file(folder / "one.csv", "x,z\n2,1\n");
+  const auto begin = [&](double phase, int cycles) {
+    Simulation run(read_scene_text(
+        fmt::format(
+            "[cell]\nwidth = 5.0\n[beads]\ncount = 1\n[contact]\nnormal = \"linear\"\ntangential = "
+            "\"none\"\n[drive]\namplitude = 0.1\nomega = 1.0\nphase = {}\n[start]\nkind = \"table\"\nfrom "
+            "= \"{}\"\nin_motion = true\n[time]\ndiscard = 0\ncycles = {}\nphases = 20\n",
+            phase, (folder / "one.csv").string(), cycles),
+        "one"));
+    MemoryTrajectory out(run.trajectory_info());
+    run.run(out);
+    return out.frames().size();
+  };
+  EXPECT_EQ(begin(0.95, 1), 1U);
+  EXPECT_EQ(begin(0.97, 2), 20U);
+  expect_refusal<ConfigError>([&] { begin(0.97, 1); }, "time.cycles", "records no frame");
 }
 
 TEST(DrivePhase, TheDriveBeginsThere) {
