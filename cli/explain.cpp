@@ -84,6 +84,8 @@ std::string as_text(const sim::Plan& plan, const sim::Scene& scene, const sim::C
                  *cost.relative_work)
            : fmt::format("measured on this machine over {} steps of this scene after {:.3g} t0 of settling\n",
                          cost.measured_steps, cost.settled_for);
+  s += fmt::format("  the time in which `simulate` writes {:.0f} frames comes on top of this\n",
+                   demand.frames);
   return s;
 }
 

@@ -237,8 +237,7 @@ void run_collect(const SweepOptions& options, const Common& common) {
   const sweep::Plan plan = plan_of(options, common);
   // The place of the table follows from the name of the output. It is checked before any work, as that is.
   if (!options.output.empty() && options.output != kStandardOutput)
-    require_output(fs::path(options.output).replace_extension(".csv"),
-                   Product::text("a table of a sweep", "id,"));
+    require_output(fs::path(options.output).replace_extension(".csv"), sweep::collected_csv_file());
   const sweep::Store store = store_of(options);
   const fs::path output = options.output.empty() ? store.folder() / "results.json" : fs::path(options.output);
   const sweep::Schedule schedule(plan, store);
@@ -253,11 +252,11 @@ void run_collect(const SweepOptions& options, const Common& common) {
     return print_result(common, {}, collected_text(schedule));
   }
   // All outputs are checked before the first one is written: either all are written or none.
-  require_output(table, Product::table(csv));
-  if (!pooled.empty()) require_output(pooled_table, Product::table(pooled));
+  require_output(table, sweep::collected_csv_file());
+  if (!pooled.empty()) require_output(pooled_table, sweep::pooled_csv_file());
   write_text_file(output, json, collected_product());
-  write_text_file(table, csv, Product::table(csv));
-  if (!pooled.empty()) write_text_file(pooled_table, pooled, Product::table(pooled));
+  write_text_file(table, csv, sweep::collected_csv_file());
+  if (!pooled.empty()) write_text_file(pooled_table, pooled, sweep::pooled_csv_file());
   const nlohmann::json document = nlohmann::json::parse(json);
   // Curves of results that the plan does not name are not missed.
   if (const auto outside = sweep::results_outside_csv(document); !plan.results.empty() && !outside.empty())

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "analysis/observable/results.hpp"
@@ -173,6 +174,15 @@ json document_of(const Schedule& schedule) {
   return document;
 }
 
+/// Columns between the axes and the results.
+const std::vector<std::string> kOfPoint = {"replica", "seed", "answer", "n_cycles", "failed"},
+                               kOfPool = {"runs"};
+
+/// Columns of a result.
+std::vector<std::string> columns_of(const std::string& name) {
+  return {name, name + "_low", name + "_high"};
+}
+
 std::string cell(const json& value) {
   if (value.is_null()) return "";
   if (!value.is_string()) return json_text(value);
@@ -194,7 +204,7 @@ std::string table_of(const json& rows, const std::vector<std::string>& lead,
   head.insert(head.end(), keys.begin(), keys.end());
   head.insert(head.end(), keys_of_row.begin(), keys_of_row.end());
   for (const auto& name : names)
-    for (const char* ending : {"", "_low", "_high"}) head.push_back(name + ending);
+    for (std::string& column : columns_of(name)) head.push_back(std::move(column));
   std::string text = fmt::format("{}\n", fmt::join(head, ","));
   for (const json& row : rows) {
     std::vector<std::string> cells;
@@ -220,8 +230,13 @@ std::string collected_json(const Schedule& schedule) {
 }
 
 std::string collected_csv(const Schedule& schedule) {
-  return table_of(document_of(schedule)["points"], {"id"},
-                  {"replica", "seed", "answer", "n_cycles", "failed"});
+  return table_of(document_of(schedule)["points"], {"id"}, kOfPoint);
+}
+
+Product collected_csv_file() {
+  return {.name = "a table of a sweep",
+          .sign = Product::Sign::head,
+          .mark = fmt::format("{}", fmt::join(kOfPoint, ","))};
 }
 
 std::vector<std::string> results_outside_csv(const json& collected) {
@@ -236,7 +251,18 @@ std::vector<std::string> results_outside_csv(const json& collected) {
 
 std::string pooled_csv(const Schedule& schedule) {
   const json pooled = document_of(schedule)["pooled"];
-  return pooled.empty() ? std::string() : table_of(pooled, {}, {"runs"});
+  const bool numbers =
+      std::any_of(pooled.begin(), pooled.end(), [](const json& row) { return !row["results"].empty(); });
+  return numbers ? table_of(pooled, {}, kOfPool) : std::string();
+}
+
+Product pooled_csv_file() {
+  std::vector<std::string> marks;  // the last column of a pool and those of its first result
+  for (const std::string& name : analysis::result_names())
+    marks.push_back(fmt::format("{},{}", kOfPool.back(), fmt::join(columns_of(name), ",")));
+  return {.name = "a pooled table of a sweep",
+          .sign = Product::Sign::head,
+          .mark = fmt::format("{}", fmt::join(marks, "\n"))};
 }
 
 namespace {
@@ -336,6 +362,32 @@ std::string shortfall(const Curve& curve, const Search& search) {
   return fmt::format("; not within search.width = {:g} after search.runs = {}", search.width, search.runs);
 }
 
+/// Why runs failed: one line for each of the three most frequent reasons, with the number of its runs.
+std::string failures_text(const Schedule& schedule) {
+  constexpr std::size_t kMostReasons = 3;
+  std::map<std::string, std::size_t> runs_of;
+  for (const Curve& curve : schedule.curves())
+    for (std::size_t i = 0; i < curve.points.size(); ++i) {
+      if (!curve.results[i] || curve.failed[i] == 0) continue;
+      std::string reason = json::parse(*curve.results[i])["failed"].get<std::string>();
+      // The name and the place of the scene's text are those of one point.
+      if (const std::string own = "point " + curve.points[i].id; reason.starts_with(own))
+        if (const std::size_t colon = reason.find(": ", own.size()); colon != std::string::npos)
+          reason.erase(0, colon + 2);
+      ++runs_of[reason];
+    }
+  std::vector<std::pair<std::string, std::size_t>> reasons(runs_of.begin(), runs_of.end());
+  std::stable_sort(reasons.begin(), reasons.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::string text;
+  for (std::size_t k = 0; k < std::min(reasons.size(), kMostReasons); ++k)
+    text += fmt::format("failed ({}): {}\n", reasons[k].second, reasons[k].first);
+  if (reasons.size() > kMostReasons)
+    text +=
+        fmt::format("failed: {} other reasons, which sweep collect writes\n", reasons.size() - kMostReasons);
+  return text;
+}
+
 }  // namespace
 
 std::string collected_text(const Schedule& schedule) {
@@ -352,7 +404,7 @@ std::string collected_text(const Schedule& schedule) {
     text += fmt::format("{}{} from {} {}{}\n", place, plan.verdict->name, plan.search->key,
                         curve.onset->text(), shortfall(curve, *plan.search));
   }
-  return text + grid_table(schedule);
+  return text + failures_text(schedule) + grid_table(schedule);
 }
 
 }  // namespace twincell::sweep

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/output_kind.hpp"
 #include "sweep/schedule.hpp"
 
 namespace twincell::sweep {
@@ -25,6 +26,8 @@ std::string collected_json(const Schedule& schedule);
 /// CSV with one line per point: id, axes, replica, seed, answer, number of cycles, failure, then value, low
 /// and high of every scalar result; empty fields for absent values.
 std::string collected_csv(const Schedule& schedule);
+/// The kind of file that holds such a text, whatever the axes and results of its plan.
+Product collected_csv_file();
 
 /// Names of the results that are no single numbers, such as spectra and tensors, and that collected_csv()
 /// therefore leaves out, in alphabetical order.
@@ -33,6 +36,8 @@ std::vector<std::string> results_outside_csv(const nlohmann::json& collected);
 
 /// CSV of `pooled`, one line per set of axes; empty if no point has two runs.
 std::string pooled_csv(const Schedule& schedule);
+/// The kind of file that holds such a text, whatever the axes and results of its plan.
+Product pooled_csv_file();
 
 /// Summary for a reader: the number of points, then one line per onset, or, for a grid, a table of at most 24
 /// rows with the phase and the first two results at each set of axes (of several runs the extremes).

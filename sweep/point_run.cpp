@@ -17,6 +17,7 @@
 #include "core/provenance.hpp"
 #include "sim/run/simulation.hpp"
 #include "sim/scene/read_scene.hpp"
+#include "sim/start/start.hpp"
 #include "sweep/conditions.hpp"
 #include "sweep/measure.hpp"
 #include "sweep/stop_rule.hpp"
@@ -72,9 +73,15 @@ void on_disk(Work work) {
   }
 }
 
+/// \throws RunError if there is no room for the beads: that is the result of one point, which other points
+/// and seeds need not share. ConfigError for what holds for every point, or only now, as the available memory
 sim::RunState placed_in_turn(const sim::Scene& scene, Progress& progress) {
   const std::lock_guard lock(hdf5_turn());  // the start may be read from a trajectory file
-  return sim::placed(scene, progress);
+  try {
+    return sim::placed(scene, progress);
+  } catch (const sim::NoRoom& e) {
+    throw RunError(e.what());
+  }
 }
 
 /// Value of the plan's verdict quantity; NaN if the run has none.

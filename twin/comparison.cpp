@@ -372,7 +372,7 @@ analysis::Comparison compare_runs(const ComparingOptions& options, const Progres
   if (options.film) c.checks.filmed = film_matches(sides, options, c.matches, progress, notes, c.runs);
   limit_pictures(c.runs);
   c.boundaries = analysis::find_boundaries(c.runs);
-  add_sweeps(options.sweeps, c);
+  add_sweeps(options.sweeps, c, notes);
   c.differences = analysis::find_differences(c.runs, c.matches, c.checks);
   return c;
 }

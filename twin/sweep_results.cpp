@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
@@ -67,6 +69,56 @@ bool is_gamma(const std::string& key) {
   return key == "drive.gamma" || key == "drive.peak_acceleration_g";
 }
 
+/// Gamma as a function of the key that a search varies. log Gamma is linear in log key between neighbouring
+/// points of a search, and beyond the outer ones. That is exact where Gamma is a power of the key, as for an
+/// amplitude, a peak velocity and K_m.
+class GammaOfKey {
+ public:
+  /// \param points of the sweep
+  GammaOfKey(const JsonView& points, std::string key) : key_(std::move(key)) {
+    for (const JsonView& point : points.elements()) {
+      const auto axes = point.find("axes");
+      if (!axes || !axes->has(key_) || !axes->at(key_).value().is_number()) continue;
+      const double value = axes->at(key_).number(),
+                   gamma = sweep::conditions_from_json(conditions_of(point)).gamma.value_or(0);
+      if (value > 0 && gamma > 0) log_gamma_[others(axes->value())][std::log(value)] = std::log(gamma);
+    }
+  }
+
+  /// Whether Gamma grows with the key in the points of an onset with these axes.
+  [[nodiscard]] bool grows(const json& axes) const {
+    const auto found = log_gamma_.find(others(axes));
+    if (found == log_gamma_.end() || found->second.size() < 2) return false;
+    const auto& curve = found->second;
+    for (auto p = curve.begin(), q = std::next(p); q != curve.end(); ++p, ++q)
+      if (!(q->second > p->second)) return false;
+    return true;
+  }
+
+  /// \pre grows(axes)
+  [[nodiscard]] std::optional<double> at(const json& axes, std::optional<double> value) const {
+    if (!value || !(*value >= 0)) return std::nullopt;
+    if (*value == 0) return 0;
+    const auto& curve = log_gamma_.at(others(axes));
+    const double x = std::log(*value);
+    auto above = std::next(curve.begin());
+    while (std::next(above) != curve.end() && above->first < x) ++above;
+    const auto below = std::prev(above);
+    const double slope = (above->second - below->second) / (above->first - below->first);
+    return std::exp(below->second + slope * (x - below->first));
+  }
+
+ private:
+  /// The axes without the key, as text.
+  [[nodiscard]] std::string others(json axes) const {
+    if (axes.is_object()) axes.erase(key_);
+    return axes.dump();
+  }
+
+  std::string key_;
+  std::map<std::string, std::map<double, double>> log_gamma_;  ///< by the other axes and log key
+};
+
 /// Axes of the sweep at an onset, without those that N_l and start state: "drive.omega = 2".
 std::string other_axes(const JsonView& onset) {
   std::string text;
@@ -82,27 +134,40 @@ std::string other_axes(const JsonView& onset) {
   return text;
 }
 
-void add_onsets(const JsonView& document, analysis::Comparison& comparison) {
+/// \return the keys of the searches whose onsets have no place in the diagram, with the number of these
+std::map<std::string, int> add_onsets(const JsonView& document, analysis::Comparison& comparison) {
+  std::map<std::string, int> elsewhere;
   const auto onsets = document.find("onsets");
-  if (!onsets) return;
+  if (!onsets) return elsewhere;
+  std::map<std::string, GammaOfKey> converters;  // by the key
   for (const JsonView& onset : onsets->elements()) {
     const analysis::BedPhase phase = analysis::phase_named(onset.at("verdict").text());
     const std::string key = onset.at("key").text();
-    if (phase == analysis::BedPhase::undetermined || !is_gamma(key)) continue;
+    if (phase == analysis::BedPhase::undetermined) continue;
     const JsonView at = conditions_of(onset);
     const std::optional<double> n_l = number(at, "n_l");
-    if (!n_l) continue;
+    const json axes = onset.has("axes") ? onset.at("axes").value() : json::object();
+    const GammaOfKey* gamma = nullptr;
+    if (!is_gamma(key)) gamma = &converters.try_emplace(key, document.at("points"), key).first->second;
+    if (!n_l || (gamma != nullptr && !gamma->grows(axes))) {
+      ++elsewhere[key];
+      continue;
+    }
+    const auto limit = [&](const char* name) {
+      return gamma != nullptr ? gamma->at(axes, number(onset, name)) : number(onset, name);
+    };
     comparison.boundaries.push_back({.side = analysis::Side::simulation,
                                      .start = at.at("start").value().is_null() ? "" : at.at("start").text(),
                                      .onset = phase,
                                      .n_l = *n_l,
                                      .n_runs = static_cast<std::size_t>(onset.at("runs").integer(0)),
-                                     .below = number(onset, "low"),
-                                     .above = number(onset, "high"),
+                                     .below = limit("low"),
+                                     .above = limit("high"),
                                      .sweep = true,
-                                     .fitted = number(onset, "value"),
+                                     .fitted = limit("value"),
                                      .axes = other_axes(onset)});
   }
+  return elsewhere;
 }
 
 /// The collected results in a file. \throws InputError if it holds something else
@@ -114,10 +179,15 @@ JsonView read_results(const fs::path& file) {
   return document;
 }
 
-void add_results(const JsonView& document, const fs::path& file, analysis::Comparison& comparison) {
+void add_results(const JsonView& document, const fs::path& file, analysis::Comparison& comparison,
+                 std::vector<std::string>& notes) {
   const std::size_t before = comparison.sweep.size() + comparison.boundaries.size();
   add_points(document, comparison);
-  add_onsets(document, comparison);
+  for (const auto& [key, count] : add_onsets(document, comparison))
+    notes.push_back(
+        fmt::format("{}: {} of {} {} no place in the diagram over Gamma and N_l; sweep plot draws {}.",
+                    file.string(), count == 1 ? "1 onset" : fmt::format("{} onsets", count), key,
+                    count == 1 ? "has" : "have", count == 1 ? "it" : "them"));
   if (comparison.sweep.size() + comparison.boundaries.size() == before)
     throw InputError(
         {.file = file.string()},
@@ -127,11 +197,12 @@ void add_results(const JsonView& document, const fs::path& file, analysis::Compa
 
 }  // namespace
 
-void add_sweep(const fs::path& file, analysis::Comparison& comparison) {
-  add_results(read_results(file), file, comparison);
+void add_sweep(const fs::path& file, analysis::Comparison& comparison, std::vector<std::string>& notes) {
+  add_results(read_results(file), file, comparison, notes);
 }
 
-void add_sweeps(const std::vector<fs::path>& files, analysis::Comparison& comparison) {
+void add_sweeps(const std::vector<fs::path>& files, analysis::Comparison& comparison,
+                std::vector<std::string>& notes) {
   std::map<std::string, fs::path> known;  // by the points, as text
   for (const fs::path& file : files) {
     const JsonView document = read_results(file);
@@ -140,7 +211,7 @@ void add_sweeps(const std::vector<fs::path>& files, analysis::Comparison& compar
       throw ConfigError({.file = {}, .key = "--sweep"},
                         fmt::format("{} and {} hold the same points; name the sweep once.",
                                     same->second.string(), file.string()));
-    add_results(document, file, comparison);
+    add_results(document, file, comparison, notes);
   }
 }
 

@@ -165,7 +165,8 @@ TEST_F(DamagedRecords, CollectedResults) {
   put_file(file, whole.dump());
   const auto use = [&] {
     analysis::Comparison c;
-    twin::add_sweep(file, c);
+    std::vector<std::string> notes;
+    twin::add_sweep(file, c, notes);
   };
   use();
   std::size_t refusals = 0;

@@ -72,7 +72,7 @@ TEST_F(Explain, EachEffectStandsInItsList) {
   const Ran text = run("explain", {});
   for (const char* heading :
        {"On, set by the scene", "Off, set by the scene", "Off, because the effect provably cannot act",
-        "Approximated", "measured on this machine"})
+        "Approximated", "measured on this machine", "frames comes on top of this"})
     EXPECT_NE(text.out.find(heading), std::string::npos) << text.out;
 }
 

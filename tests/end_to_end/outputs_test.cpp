@@ -242,6 +242,16 @@ TEST(Outputs, ATableBesideTheCollectedFileIsHeldToTheSameRules) {
   }
   for (int time = 0; time < 2; ++time) EXPECT_EQ(run_program(collect).code, 0) << time;
   EXPECT_TRUE(fs::exists("r.pooled.csv"));
+  // The plan names other axes and results now: the tables are still those of a sweep.
+  write("plan.toml",
+        "scene = \"scene.toml\"\nresults = [\"s_b\"]\n[axes]\nstart.kind = [\"random\"]\ndrive.gamma = "
+        "[1.2]\nseeds = 2\n");
+  EXPECT_EQ(run_program({"sweep", "run", "plan.toml", "--folder", "swept", "-q"}).code, 0);
+  const Ran again = run_program(collect);
+  EXPECT_EQ(again.code, 0) << again.err;
+  std::string heading;
+  std::getline(std::ifstream("r.pooled.csv") >> std::ws, heading);
+  EXPECT_EQ(heading, "drive.gamma,start.kind,runs,s_b,s_b_low,s_b_high");
 }
 
 TEST(Outputs, CollectedResultsMayBeNamedByTheirTable) {

@@ -100,6 +100,33 @@ TEST_F(Sweeps, ASweepEndsInItsPictureAndPlotDrawsOtherResults) {
   EXPECT_NE(wrong.err.find("it has s_b, s_c"), std::string::npos) << wrong.err;
 }
 
+// No order of placing discs at random fills more than 0.55 of an area.
+TEST_F(Sweeps, ABedThatCannotBePlacedIsTheResultOfItsPointAndTheOthersRun) {
+  const std::string plan = at("dense.toml");
+  write(plan, R"(results = ["T_g"]
+[scene]
+preset = "fortini-huang-2015"
+cell = { width = 8.0, height = 8.0, lid = "wall", gravity = 0 }
+drive = { amplitude = 0.1, omega = 1.0 }
+time = { integrator = "split", steps_per_contact = 6.37, discard = 1, cycles = 4, phases = 10 }
+[axes]
+start.kind = ["random"]
+beads.count = [12, 60]
+)");
+  const Ran ran = run_program({"sweep", "run", plan, "--folder", at("dense")});
+  ASSERT_EQ(ran.code, kDone) << ran.err;
+  EXPECT_NE(ran.out.find("failed (1): beads.count: 60 beads cannot be placed at random"), std::string::npos)
+      << ran.out;
+  (void)collected(plan, at("dense"));
+  const auto points = nlohmann::json::parse(bytes_of(at("dense.json")))["points"];
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_TRUE(points[0]["results"]["T_g"]["value"].is_number()) << points[0];
+  EXPECT_NE(points[1]["failed"].get<std::string>().find("60 beads cannot be placed at random"),
+            std::string::npos)
+      << points[1];
+  EXPECT_FALSE(points[1].contains("results"));
+}
+
 TEST_F(Sweeps, CompareDrawsTheDiagramOfASweepAlone) {
   ASSERT_EQ(run(grid_, at("one")).code, kDone);
   (void)collected(grid_, at("one"));

@@ -1,6 +1,7 @@
 #include "trajectory/foreign/foreign_trajectory.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -21,11 +22,18 @@ namespace {
   throw ConfigError({"", 0, 0, option}, why);
 }
 
-/// Median distance to the nearest other bead (spacing.hpp).
-double spacing_of(const std::vector<SnapshotBead>& beads) {
+/// Median distance to the nearest other bead (spacing.hpp) within one period.
+double spacing_of(const Snapshot& s) {
   std::vector<Vec3> centres;
-  centres.reserve(beads.size());
-  for (const SnapshotBead& b : beads) centres.push_back(b.position);
+  centres.reserve(s.beads.size());
+  for (const SnapshotBead& b : s.beads) {
+    Vec3 r = b.position;
+    for (int k = 0; k < 3; ++k)
+      if (const double period = s.upper[k] - s.lower[k];
+          s.periodic[static_cast<std::size_t>(k)] && period > 0)
+        r[k] -= period * std::floor((r[k] - s.lower[k]) / period);
+    centres.push_back(r);
+  }
   return median_spacing(centres);
 }
 
@@ -189,7 +197,7 @@ struct ForeignTrajectory::Impl {
       refuse("--cell-width", fmt::format("is {:g}, but the file is periodic along x with a period of {:g}.",
                                          *o.width, period));
     if (o.width) info.box.upper.x() = *o.width / o.sigma;
-    spacing = spacing_of(first.beads) / o.sigma;
+    spacing = spacing_of(first) / o.sigma;
     if (info.box.boundary[0] == Boundary::wall)
       beyond = static_cast<std::size_t>(
           std::count_if(first.beads.begin(), first.beads.end(), [&](const SnapshotBead& a) {
@@ -278,7 +286,8 @@ ForeignTrajectory::ForeignTrajectory(const std::filesystem::path& path, const Fo
     double radius, mass;  ///< mean of the radii; first mass
     bool tracer;
     double least, most;  ///< radii
-    double n = 1;        ///< frames
+    long type;
+    double n = 1;  ///< frames
   };
   std::map<std::int64_t, Bead> seen;
   std::size_t fewest = 0;
@@ -305,8 +314,12 @@ ForeignTrajectory::ForeignTrajectory(const std::filesystem::path& path, const Fo
       if (d.n_frames == 0) d.first_cycle = (n - (n % per_cycle + per_cycle) % per_cycle) / per_cycle;
     }
     for (const SnapshotBead& a : s.beads) {
-      const Bead bead{a.radius / d.o.sigma, a.mass / d.o.bead_mass.value_or(1),
-                      d.tracer_type(reader.columns()) == a.type, a.radius / d.o.sigma, a.radius / d.o.sigma};
+      const Bead bead{a.radius / d.o.sigma,
+                      a.mass / d.o.bead_mass.value_or(1),
+                      d.tracer_type(reader.columns()) == a.type,
+                      a.radius / d.o.sigma,
+                      a.radius / d.o.sigma,
+                      a.type};
       const auto [at, is_new] = seen.emplace(a.id, bead);
       if (is_new) continue;
       Bead& known = at->second;
@@ -343,6 +356,18 @@ ForeignTrajectory::ForeignTrajectory(const std::filesystem::path& path, const Fo
                           "the masses of the file, {:.6g} to {:.6g}, are not read, because their unit "
                           "is not known (--bead-mass; 1 for a file that twincell exported).",
                           least->second.mass, most->second.mass);
+  std::map<long, std::size_t> beads_of_type;
+  for (const auto& [id, bead] : seen) ++beads_of_type[bead.type];
+  if (reader.columns().type && !d.tracer_type(reader.columns()) && beads_of_type.size() > 1) {
+    constexpr std::size_t kFew = 4;
+    std::vector<std::string> words;
+    for (const auto& [type, beads] : beads_of_type)
+      words.push_back(fmt::format("{} of type {}", beads, type));
+    d.assumption +=
+        std::string(d.assumption.empty() ? "" : " ") +
+        fmt::format("the file has beads of {} types{}, and none is taken for a tracer (--tracer-type).",
+                    words.size(), words.size() > kFew ? "" : fmt::format(" ({})", fmt::join(words, ", ")));
+  }
   const Vec3 along_y = reader.upright(Vec3(0, 1, 0));
   d.complete(first, reader.columns(), along_y.minCoeff() < 0);
 }

@@ -223,6 +223,21 @@ TEST_F(Dump, MalformedOnesAreRefusedByLine) {
             "three-dimensional system (--dimension 3)?");
 }
 
+TEST_F(Dump, TypesThatAreNotReadAsTracersAreSaid) {
+  const auto said = [&](const std::vector<std::string>& beads, std::optional<long> tracers) {
+    put_file(file(), frame_text(0, "ff ff pp", "id type x y", beads));
+    ForeignOptions options = reduced();
+    options.tracer_type = tracers;
+    return ForeignTrajectory(file(), foreign_format("lammps-dump", ""), options).assumption();
+  };
+  const std::vector<std::string> two = {"1 1 1 1", "2 7 3 1", "3 1 5 1"};
+  EXPECT_EQ(said(two, {}),
+            "the file has beads of 2 types (2 of type 1, 1 of type 7), and none is taken for a tracer "
+            "(--tracer-type).");
+  EXPECT_EQ(said(two, 7), "");
+  EXPECT_EQ(said({"1 3 1 1", "2 3 3 1"}, {}), "");
+}
+
 TEST_F(Dump, OptionsThatDoNotFitAreRefused) {
   const std::string text =
       frame_text(0, "ff ff pp", "id x y", {"1 1 1"}) + frame_text(77, "ff ff pp", "id x y", {});

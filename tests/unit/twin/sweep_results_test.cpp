@@ -31,6 +31,22 @@ constexpr const char* kResults = R"({"format": "twincell sweep 1", "plan": "", "
     {"conditions": {"n_l": null, "start": "crystal_a"}, "key": "beads.layers",
      "verdict": "convecting", "value": 7, "low": 6, "high": 8, "runs": 9, "yes": 4}]})";
 
+// Searches over the amplitude at two frequencies, Gamma = A omega^2, and over the friction.
+constexpr const char* kOtherKeys = R"({"format": "twincell sweep 1", "plan": "", "open": 0, "points": [
+    {"axes": {"drive.omega": 2, "drive.amplitude": 0.25}, "conditions": {"n_l": 20, "gamma": 1.0, "start": "random"}},
+    {"axes": {"drive.omega": 2, "drive.amplitude": 0.75}, "conditions": {"n_l": 20, "gamma": 3.0, "start": "random"}},
+    {"axes": {"drive.omega": 1, "drive.amplitude": 1.0}, "conditions": {"n_l": 20, "gamma": 1.0, "start": "random"}},
+    {"axes": {"drive.omega": 1, "drive.amplitude": 3.0}, "conditions": {"n_l": 20, "gamma": 3.0, "start": "random"}},
+    {"axes": {"contact.mu": 0.1}, "conditions": {"n_l": 20, "gamma": 2.0, "start": "random"}},
+    {"axes": {"contact.mu": 0.9}, "conditions": {"n_l": 20, "gamma": 2.0, "start": "random"}}],
+   "onsets": [
+    {"axes": {"drive.omega": 2}, "conditions": {"n_l": 20, "start": "random"}, "key": "drive.amplitude",
+     "verdict": "convecting", "value": 0.5, "low": 0.4, "high": 0.875, "runs": 12, "yes": 5},
+    {"axes": {"drive.omega": 1}, "conditions": {"n_l": 20, "start": "random"}, "key": "drive.amplitude",
+     "verdict": "convecting", "value": null, "low": 2.5, "high": null, "runs": 12, "yes": 0},
+    {"axes": {}, "conditions": {"n_l": 20, "start": "random"}, "key": "contact.mu",
+     "verdict": "convecting", "value": 0.4, "low": 0.3, "high": 0.5, "runs": 9, "yes": 4}]})";
+
 void check(const analysis::Comparison& c) {
   // The failed point has no phase, and neither has the bouncing one, which lacks s_c. The point without N_l
   // and Gamma has no place in the diagram, and the onset in the number of layers has no Gamma.
@@ -54,8 +70,29 @@ TEST(SweepResults, PointsAndOnsetsAreWhereTheFileStatesThem) {
   const TemporaryFolder folder;
   put_file(folder / "results.json", kResults);
   analysis::Comparison c;
-  add_sweep(folder / "results.json", c);
+  std::vector<std::string> notes;
+  add_sweep(folder / "results.json", c, notes);
   check(c);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("1 onset of beads.layers has no place in the diagram"), std::string::npos)
+      << notes[0];
+}
+
+TEST(SweepResults, AnOnsetInAnotherMeasureOfTheDriveIsConverted) {
+  const TemporaryFolder folder;
+  put_file(folder / "results.json", kOtherKeys);
+  analysis::Comparison c;
+  std::vector<std::string> notes;
+  add_sweep(folder / "results.json", c, notes);
+  ASSERT_EQ(c.boundaries.size(), 2U);
+  EXPECT_NEAR(c.boundaries[0].below.value(), 1.6, 1e-12);
+  EXPECT_NEAR(c.boundaries[0].gamma().value(), 2.0, 1e-12);
+  EXPECT_NEAR(c.boundaries[0].above.value(), 3.5, 1e-12);  // beyond the points
+  EXPECT_NEAR(c.boundaries[1].below.value(), 2.5, 1e-12);
+  EXPECT_FALSE(c.boundaries[1].above);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("1 onset of contact.mu has no place in the diagram"), std::string::npos)
+      << notes[0];
 }
 
 // Versions that did not store the conditions left the reader to find them in the text of the plan.
@@ -67,7 +104,8 @@ TEST(SweepResults, AFileWithoutConditionsIsToBeCollectedAgain) {
             [{"axes": {}, "key": "drive.gamma", "verdict": "bouncing", "runs": 3}]})"}) {
     put_file(folder / "results.json", text);
     analysis::Comparison c;
-    expect_refusal<InputError>([&] { add_sweep(folder / "results.json", c); },
+    std::vector<std::string> notes;
+    expect_refusal<InputError>([&] { add_sweep(folder / "results.json", c, notes); },
                                "does not state its N_l, Gamma and start",
                                "collect it again with `twincell sweep collect`");
   }
@@ -76,6 +114,7 @@ TEST(SweepResults, AFileWithoutConditionsIsToBeCollectedAgain) {
 TEST(SweepResults, AnythingElseIsRefused) {
   const TemporaryFolder folder;
   analysis::Comparison c;
+  std::vector<std::string> notes;
   for (const char* text : {"", "[]", "{\"format\": \"else\"}", "{\"format\": \"twincell sweep 1\"}",
                            // A key of a point or an onset is missing or has another type.
                            R"({"format": "twincell sweep 1", "plan": "", "points": 3})",
@@ -90,7 +129,7 @@ TEST(SweepResults, AnythingElseIsRefused) {
                                "onsets": [{"conditions": {"n_l": 20, "start": "random"}, "verdict": "bouncing",
                                            "key": "drive.gamma"}]})"}) {
     put_file(folder / "results.json", text);
-    EXPECT_THROW(add_sweep(folder / "results.json", c), InputError) << text;
+    EXPECT_THROW(add_sweep(folder / "results.json", c, notes), InputError) << text;
   }
 }
 
@@ -102,12 +141,13 @@ TEST(SweepResults, ASweepCountsOnceAndHasAPlaceInTheDiagram) {
             [{"id": "w", "conditions": {"n_l": null, "gamma": null, "start": "table"},
               "results": {"phase": {"value": "bouncing"}}}]})");
   analysis::Comparison c;
+  std::vector<std::string> notes;
   expect_refusal<ConfigError>(
       [&] {
-        add_sweeps({folder / "a.json", folder / "b.json"}, c);
+        add_sweeps({folder / "a.json", folder / "b.json"}, c, notes);
       },
       "a.json and ", "hold the same points; name the sweep once");
-  expect_refusal<InputError>([&] { add_sweep(folder / "none.json", c); },
+  expect_refusal<InputError>([&] { add_sweep(folder / "none.json", c, notes); },
                              "no point of the sweep has a place in the diagram", "results of its plan");
 }
 
