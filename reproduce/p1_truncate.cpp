@@ -18,8 +18,9 @@ struct Rule {
   const char* word;  ///< contact.tangential
   const char* name;
 };
-constexpr std::array<Rule, 2> kRules = {
-    {{"spring", "spring and dashpot limited together"}, {"spring-limited", "spring alone limited"}}};
+constexpr std::array<Rule, 3> kRules = {{{"spring", "spring and dashpot limited together"},
+                                         {"spring-limited", "spring alone limited"},
+                                         {"force-clipped", "force alone limited, the spring stretches on"}}};
 
 /// Targets of both figures under one rule.
 std::vector<Target> targets_of(const Rule& rule, const StrengthSweeps& sweeps) {
