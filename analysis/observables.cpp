@@ -109,18 +109,19 @@ AnalysisContext make_context(const TrajectorySource& trajectory, const AnalysisO
   context.tracers = choice.slots;
   context.tracer_choice = choice.how;
   if (choice.slots.empty()) context.no_tracers = choice.how;
-  const auto plate = plate_height(info, frame);
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const double plate =
+      why_not_at_rest(info, frame).empty() ? plate_height(info, frame).value_or(kUnknown) : kUnknown;
   double sum = 0;
   std::size_t n = 0;
   for (const std::size_t slot : choice.slots) {
     const bool seen = frame.present(slot) && std::isfinite(frame.position[slot].z());
-    context.tracer_rest_heights.push_back(seen && plate ? frame.position[slot].z() - *plate
-                                                        : std::numeric_limits<double>::quiet_NaN());
+    context.tracer_rest_heights.push_back(seen ? frame.position[slot].z() - plate : kUnknown);
     if (!seen) continue;
     sum += frame.position[slot].z();
     ++n;
   }
-  if (plate && n > 0) context.tracer_rest_height = sum / static_cast<double>(n) - *plate;
+  if (n > 0) context.tracer_rest_height = sum / static_cast<double>(n) - plate;
   context.rest_height =
       options.rest_height ? options.rest_height : resting_height(info, frame, context.no_rest_height);
   return context;

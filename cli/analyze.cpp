@@ -190,6 +190,22 @@ void note_cutoff(const Common& common, const TrajectorySource& trajectory,
            trajectory.name(), diameter, cutoff, cutoff * diameter));
 }
 
+/// A note on periods in which a bead meets several images of a neighbour, of which one counts.
+void note_periods(const Common& common, const TrajectorySource& trajectory,
+                  const analysis::AnalysisOptions& options) {
+  const Box& box = trajectory.info().box;
+  const double cutoff = analysis::neighbour_cutoff(trajectory.info(), options),
+               reach = box.dimension == 2 ? std::max(cutoff, 2 * options.cell_radius) : cutoff;
+  for (const Axis axis : {Axis::x, Axis::y, Axis::z})
+    if (const double period = box.size()[static_cast<int>(axis)]; box.periodic(axis) && period < 2 * reach)
+      note(common,
+           fmt::format(
+               "{}: the period along {}, {:g} sigma, is shorter than twice the reach of a neighbour, {:g} "
+               "sigma; one image of each bead counts, so that order, contact numbers and Voronoi cells are "
+               "not those of the periodic bed.",
+               trajectory.name(), "xyz"[static_cast<int>(axis)], period, reach));
+}
+
 /// Analyses a run in windows. The results go to a table, if one is requested.
 void run_windows(const Common& common, const AnalyzeOptions& options) {
   const auto refuse = [](const char* option, const char* why) {
@@ -204,6 +220,7 @@ void run_windows(const Common& common, const AnalyzeOptions& options) {
   const H5mdReader trajectory(options.trajectories.front());
   note_drive(common, trajectory);
   note_cutoff(common, trajectory, options.analysis);
+  note_periods(common, trajectory, options.analysis);
   std::vector<analysis::Window> windows;
   std::vector<analysis::CycleRange> left_out;
   {
@@ -248,16 +265,20 @@ void run(const Common& common, const AnalyzeOptions& options) {
   for (const TrajectorySource* trajectory : trajectories) {
     note_drive(common, *trajectory);
     note_cutoff(common, *trajectory, options.analysis);
+    note_periods(common, *trajectory, options.analysis);
   }
   if (readers.size() > 1 && !options.figures.empty())
     throw ConfigError({.file = {}, .key = "--figures"},
                       fmt::format("draws one trajectory; {} were given", readers.size()));
   std::vector<std::vector<analysis::Result>> runs;
+  analysis::AnalysisOptions of_run = options.analysis;
+  if (readers.size() > 1) of_run.only = analysis::needed_to_pool(of_run.only);
   for (const TrajectorySource* trajectory : trajectories) {
     ProgressBar progress(common, readers.size() > 1 ? trajectory->name() : "analyze");
-    runs.push_back(analysis::analyze(*trajectory, options.analysis, progress, profile.times()));
+    runs.push_back(analysis::analyze(*trajectory, of_run, progress, profile.times()));
   }
-  const std::vector<analysis::Result> results = runs.size() > 1 ? analysis::pool(runs) : runs.front();
+  const std::vector<analysis::Result> results =
+      runs.size() > 1 ? analysis::pool(runs, options.analysis.only) : runs.front();
 
   Provenance provenance = common.provenance();
   provenance.inputs.assign(options.trajectories.begin(), options.trajectories.end());

@@ -49,9 +49,11 @@ Results analyzed(const std::vector<std::shared_ptr<Trajectory>>& trajectories,
   return unlocked(callback, [&](Progress& progress) {
     std::vector<std::vector<analysis::Result>> runs;
     runs.reserve(sources.size());
+    analysis::AnalysisOptions of_run = options;
+    if (sources.size() > 1) of_run.only = analysis::needed_to_pool(of_run.only);
     for (const TrajectorySource* source : sources)
-      runs.push_back(analysis::analyze(*source, options, progress));
-    return Results{runs.size() > 1 ? analysis::pool(runs) : runs.front(), provenance.to_json()};
+      runs.push_back(analysis::analyze(*source, of_run, progress));
+    return Results{runs.size() > 1 ? analysis::pool(runs, options.only) : runs.front(), provenance.to_json()};
   });
 }
 

@@ -63,11 +63,17 @@ inline void film_rigid_bed(const RigidBed& bed, const TrajectoryInfo& info, Traj
       frame.phase = k;
       frame.cycle = j;
       frame.plate_height = info.drive->displacement(fraction);
+      constexpr double kStep = 1e-6;
+      const double rise =
+          rigid_bed_height(bed.gamma, phi) > 0
+              ? (rigid_bed_height(bed.gamma, phi + kStep) - rigid_bed_height(bed.gamma, phi - kStep)) /
+                    (2 * kStep)
+              : 0;
       for (const Vec3& r : rest) {
         const double lift =
             rigid_bed_height(bed.gamma, phi) + bed.shear_per_cycle * (r.x() - bed.columns / 2.0) * j;
         frame.position.emplace_back(r + Vec3(0, 0, frame.plate_height + lift));
-        if (bed.velocities) frame.velocity.emplace_back(0, 0, 0.3);
+        if (bed.velocities) frame.velocity.emplace_back(0, 0, info.drive->velocity(fraction) + rise);
       }
       sink.append(frame);
     }

@@ -13,10 +13,14 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {
-    {"stress"},           {"stress_kinetic"}, {.name = "pressure", .main = true},
-    {"pressure_kinetic"}, {"stress_xx_z"},    {"stress_zz_z"},
-    {"stress_z"},         {"wall_force"}};
+constexpr NamedResult kResults[] = {{"stress"},
+                                    {"stress_kinetic"},
+                                    {.name = "pressure", .main = true},
+                                    {"pressure_kinetic"},
+                                    {.name = "stress_xx_z", .along = "stress_z", .elsewhere = 0},
+                                    {.name = "stress_zz_z", .along = "stress_z", .elsewhere = 0},
+                                    {.name = "stress_z", .along = "stress_z"},
+                                    {"wall_force"}};
 const char* const kSource = "Goldhirsch 2010";
 constexpr double kMargin = 0.5;  // sigma, of the window: a bead reaches half its diameter beyond its centre
 

@@ -11,8 +11,10 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{"profile_z"}, {"phi_z"},        {"T_z_z"},
-                                    {"T_x_z"},     {"T_z_frames_z"}, {"T_z_volume"}};
+constexpr NamedResult kResults[] = {
+    {.name = "profile_z", .along = "profile_z"},    {.name = "phi_z", .along = "profile_z", .elsewhere = 0},
+    {.name = "T_z_z", .along = "profile_z"},        {.name = "T_x_z", .along = "profile_z"},
+    {.name = "T_z_frames_z", .along = "profile_z"}, {"T_z_volume"}};
 
 const char* const kSource = "Bhateja, Sharma & Singh 2016, Figs. 12 to 16";
 

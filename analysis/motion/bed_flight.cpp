@@ -7,6 +7,7 @@
 #include <cmath>
 #include <deque>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/constants.hpp"
@@ -25,6 +26,8 @@ constexpr double kThrowingSupport = 2;
 /// Take-off speed relative to the plate, in units of the plate's peak velocity, above which a bed is thrown
 /// off.
 constexpr double kThrownSpeed = 0.1;
+/// Support, in weights of the bed, from which a single instant ends a flight.
+constexpr double kLandingSupport = 0.75;
 constexpr int kFewestPhases = 8;
 constexpr int kInstantsPerCycle = 20;  ///< instants per cycle from which second differences are taken
 
@@ -104,6 +107,7 @@ class BedFlight : public Observable {
       since_.reset();
       in_cycle_ = 0;
       flight_.clear();
+      doubtful_.reset();
     }
     last_.push_back(now);
     if (last_.size() < static_cast<std::size_t>(2 * stride_ + 1)) return;
@@ -157,8 +161,25 @@ class BedFlight : public Observable {
     return first || mass > 0;
   }
 
-  /// Processes one instant, with the support in units of the bed's weight.
+  /// Processes one instant, with the support in units of the bed's weight. A single instant with a small
+  /// support in the midst of a flight belongs to it: the second difference of few beads is that uncertain,
+  /// and a landing is a blow.
   void judge(const Instant& m, double support) {
+    if (doubtful_) {
+      const auto [instant, of_it] = *doubtful_;
+      doubtful_.reset();
+      if (support < kFlyingSupport)
+        flight_.push_back(instant);
+      else
+        settle(instant, of_it);
+    } else if (flight_.size() >= 2 && support >= kFlyingSupport && support < kLandingSupport) {
+      doubtful_ = {m, support};
+      return;
+    }
+    settle(m, support);
+  }
+
+  void settle(const Instant& m, double support) {
     if (support < kFlyingSupport) {
       if (flight_.empty()) thrown_ = std::max(carried_[0], carried_[1]) > kThrowingSupport;
       flight_.push_back(m);
@@ -251,9 +272,10 @@ class BedFlight : public Observable {
   std::optional<std::int64_t> since_;  ///< first tick of the current cycle
   double in_cycle_ = 0;                ///< total duration of the flights that ended in the current cycle
   std::vector<Instant> flight_;        ///< instants of the current flight
-  double landed_ = -HUGE_VAL;          ///< end of the previous flight
-  std::array<double, 2> carried_{};    ///< support at the last two instants on the plate
-  bool thrown_ = false;                ///< the current flight began with a throw
+  std::optional<std::pair<Instant, double>> doubtful_;  ///< after flight_: an instant and its small support
+  double landed_ = -HUGE_VAL;                           ///< end of the previous flight
+  std::array<double, 2> carried_{};                     ///< support at the last two instants on the plate
+  bool thrown_ = false;                                 ///< the current flight began with a throw
   SeriesAverage durations_, share_;
 };
 

@@ -152,6 +152,24 @@ Result Bouncing::s_b(const std::string& name, SbForm form, const std::vector<dou
   const double rest = context_.tracer_rest_height;
   if (n_phases_ < 2)
     return absent_result(name, "a curve s(k) needs at least 2 phases per cycle", kSpreadSource);
+  if (form == SbForm::about_rest) {
+    // Without velocities nothing else shows that the first frame is one of a flight. Positions scatter by
+    // less.
+    constexpr double kLower = 0.1;
+    const double lowest = *std::min_element(s_k.begin(), s_k.end());
+    if (context_.info.columns.velocity ? !std::isfinite(rest) : lowest < rest - kLower)
+      return absent_result(
+          name,
+          std::isfinite(rest)
+              ? fmt::format(
+                    "the tracers are {:.4g} sigma above the plate in the first frame and {:.4g} sigma in the "
+                    "mean of another phase, so that they do not lie at rest in the first",
+                    rest, lowest)
+              : "the height of the tracers at rest is not known, because the bed does not lie at rest in the "
+                "first "
+                "frame",
+          kSpreadSource);
+  }
   Result r{.name = name,
            .values = {s_b_of(s_k, form, rest)},
            .unit = "sigma",

@@ -119,9 +119,10 @@ class CentreOfMass : public Observable {
       r.interval->low = (r.interval->low - rest) / scale;
       r.interval->high = (r.interval->high - rest) / scale;
     }
-    r.convention = fmt::format("h_cm above its rest height, {:.6g} sigma ({}){}; {}", rest,
-                               context_.options.rest_height ? "as given" : "of the first frame, at rest",
-                               scale == 1 && unit != "1" ? "" : ", divided by V_p^2/g", h.convention);
+    r.convention = fmt::format(
+        "h_cm above its rest height, {:.6g} sigma ({}){}; {}", rest,
+        context_.options.rest_height ? context_.options.rest_height_is : "of the first frame, at rest",
+        scale == 1 && unit != "1" ? "" : ", divided by V_p^2/g", h.convention);
     return r;
   }
 
@@ -138,24 +139,13 @@ class CentreOfMass : public Observable {
 
 }  // namespace
 
-std::optional<double> resting_height(const TrajectoryInfo& info, const Frame& frame, std::string& why_not) {
-  const auto plate = plate_height(info, frame);
-  const double height = centre_of_mass_height(frame, info.mass);
-  if (!plate || !std::isfinite(height)) {
-    why_not = plate ? "the first frame holds no bead" : "the plate's height is not known";
-    return std::nullopt;
-  }
-  if (frame.time > 0 && info.conditions.gamma && *info.conditions.gamma > 1) {
-    why_not = fmt::format(
+std::string why_not_at_rest(const TrajectoryInfo& info, const Frame& frame) {
+  if (frame.time > 0 && info.conditions.gamma && *info.conditions.gamma > 1)
+    return fmt::format(
         "the file begins {:.3g} t0 after the drive has begun, at Gamma = {:.3g}, when the bed no longer lies "
-        "as it did at rest; analyse a file without time.discard, or state --rest-height",
+        "as it did at rest; analyse a file without time.discard",
         frame.time, *info.conditions.gamma);
-    return std::nullopt;
-  }
-  if (frame.velocity.empty()) {
-    why_not = "the trajectory has no velocities that show whether the bed is at rest in its first frame";
-    return std::nullopt;
-  }
+  if (frame.velocity.empty()) return {};
   Vec3 of_plate = Vec3::Zero();
   if (info.drive && frame.phase >= 0 && info.phases_per_cycle > 0) {
     const double fraction = static_cast<double>(frame.phase) / info.phases_per_cycle;
@@ -168,14 +158,28 @@ std::optional<double> resting_height(const TrajectoryInfo& info, const Frame& fr
     still += frame.velocity[i].squaredNorm() / 2;
     ++n;
   }
+  if (n == 0) return {};
   // At time 0 a bed at rest in the lab counts as well. At other times it does not, because the bed may be at
   // the top of its flight.
   const double energy = (frame.time == 0 ? std::min(riding, still) : riding) / n;
-  if (energy <= kAtRest) return height - *plate;
-  why_not = fmt::format(
+  if (energy <= kAtRest) return {};
+  return fmt::format(
       "the beads of the first frame move with {:.2g} m g sigma each relative to the plate; at most {:g} at "
       "rest",
       energy, kAtRest);
+}
+
+std::optional<double> resting_height(const TrajectoryInfo& info, const Frame& frame, std::string& why_not) {
+  const auto plate = plate_height(info, frame);
+  const double height = centre_of_mass_height(frame, info.mass);
+  if (!plate || !std::isfinite(height))
+    why_not = plate ? "the first frame holds no bead" : "the plate's height is not known";
+  else if (why_not = why_not_at_rest(info, frame); !why_not.empty())
+    why_not += "; --rest-height states the height";
+  else if (frame.velocity.empty())
+    why_not = "the trajectory has no velocities that show whether the bed is at rest in its first frame";
+  else
+    return height - *plate;
   return std::nullopt;
 }
 

@@ -15,10 +15,14 @@ namespace twincell::analysis {
 /// for ever, and beds of a law without static friction never come to rest completely.
 inline constexpr double kAtRest = 0.005;
 
-/// Height of the centre of mass above the plate, sigma, if the bed rests in this frame. The bed rests if the
-/// kinetic energy per bead relative to the plate, or at time 0 (before the drive begins) relative to the lab,
-/// is at most kAtRest.
-/// \param why_not set to the reason if the result is absent
+/// Why the bed does not lie at rest in this frame, which is the first of a file; empty if it does, or if
+/// nothing in the file shows that it does not. It does not if the file begins after the drive, at Gamma > 1,
+/// or if the kinetic energy per bead relative to the plate, or at time 0 (before the drive begins) relative
+/// to the lab, exceeds kAtRest.
+std::string why_not_at_rest(const TrajectoryInfo& info, const Frame& frame);
+
+/// Height of the centre of mass above the plate, sigma, if the bed rests in this frame and velocities show
+/// it. \param why_not set to the reason if the result is absent
 std::optional<double> resting_height(const TrajectoryInfo& info, const Frame& frame, std::string& why_not);
 
 /// Height of the centre of mass above the mean height of the plate. Results:

@@ -50,7 +50,7 @@ std::vector<std::size_t> one_per_column(const Frame& frame, const std::vector<st
   const double width = box.size().x() / static_cast<double>(columns);
   std::vector<std::optional<std::size_t>> best(columns);
   for (const std::size_t i : beads) {
-    const double column = std::floor((frame.position[i].x() - box.lower.x()) / width);
+    const double column = std::floor((box.wrap(frame.position[i]).x() - box.lower.x()) / width);
     if (column < 0 || column >= static_cast<double>(columns)) continue;
     auto& held = best[static_cast<std::size_t>(column)];
     if (!held || std::abs(frame.position[i].z() - middle) < std::abs(frame.position[*held].z() - middle))

@@ -60,7 +60,7 @@ BondOrder bond_order(const Neighbours& neighbours, const std::vector<double>& we
 
 double lattice_angle(double real, double imaginary) {
   const double degrees = std::atan2(imaginary, real) / 6 * 180 / std::numbers::pi;
-  return degrees < -15 ? degrees + kLatticePeriodDegrees : degrees;
+  return degrees < kLowestOrientation ? degrees + kLatticePeriodDegrees : degrees;
 }
 
 double misorientation(double angle, double other) {

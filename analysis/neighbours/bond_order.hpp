@@ -12,6 +12,8 @@ namespace twincell::analysis {
 inline constexpr double kOrdered = 0.9;
 /// The directions of a hexagonal lattice repeat after this angle, degrees.
 inline constexpr double kLatticePeriodDegrees = 60;
+/// The least of these angles; A is 0, B 30.
+inline constexpr double kLowestOrientation = -15;
 
 /// Bond order of every bead. NaN where undefined.
 struct BondOrder {

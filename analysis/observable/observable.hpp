@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -95,7 +96,8 @@ struct AnalysisOptions {
   double cell_radius = kCellRadius;        ///< sigma; radius of a Voronoi cell (voronoi.hpp)
   double field_cell = 2;                   ///< sigma; side of the cells in which displacements are averaged
   std::optional<double> rest_height;  ///< sigma; height of the resting bed's centre of mass above the plate
-  std::vector<std::string> only;      ///< names of the requested results; empty: all
+  std::string rest_height_is = "as given";  ///< where rest_height comes from, for conventions
+  std::vector<std::string> only;            ///< names of the requested results; empty: all
 
   /// Whether the result `name` is requested.
   [[nodiscard]] bool wants(const std::string& name) const;
@@ -115,7 +117,7 @@ struct AnalysisContext {
   std::string tracer_choice;         ///< how the tracers were chosen
   std::string no_tracers;            ///< why there are no tracers; empty if there are any
   /// Mean height of the tracers above the plate in the frame in which they were chosen, sigma; NaN if
-  /// unknown.
+  /// unknown, or if the bed does not lie at rest there.
   double tracer_rest_height;
   /// [tracers] the same height for each tracer; NaN if unknown.
   std::vector<double> tracer_rest_heights = {};
@@ -174,6 +176,12 @@ struct NamedResult {
   bool may_repeat =
       false;          ///< two different runs may well give the same value: a count, or a camera constant
   bool main = false;  ///< one of the main results, which `analyze` and `measure` print without -v
+  /// The result with the abscissas of a sparse profile, by which the elements of several runs are matched;
+  /// empty for other results.
+  std::string_view along = {};
+  /// Value of a sparse profile at an abscissa that a run does not have: 0 for a filling or a stress, NaN,
+  /// none, for a mean.
+  double elsewhere = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// One observable: its results and its factory. NAME.cpp defines NAME_observable, the list in observables.cpp

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "analysis/motion/tracers.hpp"
+#include "analysis/neighbours/bond_order.hpp"
 #include "analysis/statistics/statistics.hpp"
 #include "core/counted.hpp"
 
@@ -61,16 +62,24 @@ double deviation(const std::vector<double>& values) {
   return std::sqrt(sum / static_cast<double>(values.size() - 1));
 }
 
-/// Mean of a number over the runs `members`, with its error from their intervals.
+/// Value of a result; an angle, which has the period of a hexagonal lattice, at its place nearest to
+/// `reference`.
+double value_near(const Result& r, double reference) {
+  if (named_result(r.name).pooling != Pooling::angle) return r.value();
+  return reference + std::remainder(r.value() - reference, kLatticePeriodDegrees);
+}
+
+/// Mean of a number over the runs `members`, with its error from their intervals. \param reference for an
+/// angle
 std::optional<Measured> measured(const std::vector<Run>& runs, const std::vector<std::size_t>& members,
-                                 const std::string& name) {
+                                 const std::string& name, double reference) {
   std::vector<double> values;
   double squares = 0;
   bool all = true;
   for (const std::size_t i : members) {
     const Result* r = scalar(runs[i].results, name);
     if (r == nullptr) continue;
-    values.push_back(r->value());
+    values.push_back(value_near(*r, reference));
     const auto error = standard_error(*r);
     all = all && error;
     squares += error ? *error * *error : 0;
@@ -85,7 +94,8 @@ std::optional<Measured> measured(const std::vector<Run>& runs, const std::vector
 void compare_simulations(const std::vector<Run>& runs, const Match& match, Difference& d) {
   std::map<std::string, std::vector<double>> of_start;
   for (const std::size_t i : match.simulations)
-    if (const Result* r = scalar(runs[i].results, d.quantity)) of_start[runs[i].start].push_back(r->value());
+    if (const Result* r = scalar(runs[i].results, d.quantity))
+      of_start[runs[i].start].push_back(value_near(*r, d.experiment.value));
   double low = INFINITY, high = -INFINITY;
   for (const auto& [start, values] : of_start) {
     low = std::min(low, mean(values));
@@ -231,9 +241,10 @@ std::vector<Difference> find_differences(const std::vector<Run>& runs, const std
     const Match& match = matches[m];
     if (match.experiments.empty() || match.simulations.empty()) continue;
     for (const Result& r : runs[match.experiments.front()].results) {
-      const auto experiment = measured(runs, match.experiments, r.name),
-                 simulation = measured(runs, match.simulations, r.name);
-      if (!experiment || !simulation) continue;
+      const auto experiment = measured(runs, match.experiments, r.name, r.value());
+      if (!experiment) continue;
+      const auto simulation = measured(runs, match.simulations, r.name, experiment->value);
+      if (!simulation) continue;
       Difference d{.match = m,
                    .quantity = r.name,
                    .unit = r.unit,
@@ -246,7 +257,7 @@ std::vector<Difference> find_differences(const std::vector<Run>& runs, const std
           continue;
         const Result *seen = scalar(filmed.seen, r.name), *after = scalar(filmed.filmed, r.name);
         if (seen == nullptr || after == nullptr) continue;
-        d.camera = after->value() - seen->value();
+        d.camera = value_near(*after, seen->value()) - seen->value();
         d.filmed = simulation->value + *d.camera;  // the effect of the camera, added to the mean of all seeds
         if (const auto error = standard_error(*after))
           other_error = std::max(*error, other_error.value_or(0));

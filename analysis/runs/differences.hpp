@@ -25,7 +25,9 @@ struct Measured {
   std::optional<double> error;
 };
 
-/// One number on both sides. All values have the unit of the number; absent values were not determined.
+/// One number on both sides. All values have the unit of the number; absent values were not determined. An
+/// orientation of the simulation is the one nearest to the experiment's, which may be beyond -15 … 45
+/// degrees.
 struct Difference {
   std::size_t match = 0;  ///< index of the match
   std::string quantity, unit;

@@ -136,7 +136,12 @@ Result pooled_scalar(const std::vector<const Result*>& with, const std::vector<d
     r.no_interval = "a count, exact";
     return r;
   }
-  r.values = {back(rule, mean(v.values))};
+  // The mean of unwrapped angles is put back into the range of the angle of a run.
+  const double turns =
+      rule == Pooling::angle
+          ? kLatticePeriodDegrees * std::floor((mean(v.values) - kLowestOrientation) / kLatticePeriodDegrees)
+          : 0;
+  r.values = {back(rule, mean(v.values)) - turns};
   r.convention =
       convention_of(with, of_runs.size(), rule == Pooling::root_mean_square ? "root mean square" : "mean");
   if (with.size() == 1) {
@@ -158,12 +163,98 @@ Result pooled_scalar(const std::vector<const Result*>& with, const std::vector<d
     r.no_interval = "the same in every run";
     return r;
   }
-  r.interval->low = back(rule, r.interval->low);
-  r.interval->high = back(rule, r.interval->high);
+  r.interval->low = back(rule, r.interval->low) - turns;
+  r.interval->high = back(rule, r.interval->high) - turns;
   if (is_probability) {
     r.interval->low = std::max(0.0, r.interval->low);
     r.interval->high = std::min(1.0, r.interval->high);
   }
+  return r;
+}
+
+/// The present result of that name of each run, or null.
+std::vector<const Result*> each(const std::vector<std::vector<Result>>& runs, const std::string& name) {
+  std::vector<const Result*> found;
+  for (const auto& results : runs) {
+    const Result* r = seek_result(results, name);
+    found.push_back(r != nullptr && r->present() ? r : nullptr);
+  }
+  return found;
+}
+
+std::vector<const Result*> without_null(std::vector<const Result*> results) {
+  std::erase(results, nullptr);
+  return results;
+}
+
+/// A sparse profile: the elements of the runs are matched by their abscissas, those of all runs.
+/// \param of_runs [runs] the profile, or null \param along [runs] its abscissas, or null
+Result pooled_profile(const std::vector<const Result*>& of_runs, const std::vector<const Result*>& along) {
+  const std::vector<const Result*> with = without_null(of_runs);
+  const Result& first = *with.front();
+  const NamedResult named = named_result(first.name);
+  constexpr double kSame = 1e-6;  // sigma; slabs are about one apart
+  struct Element {
+    double abscissa;
+    std::vector<double> values;
+  };
+  std::map<std::int64_t, Element> elements;
+  const auto key = [](double z) { return std::llround(z / kSame); };
+  for (const Result* a : without_null(along))
+    for (const double z : a->values) elements.try_emplace(key(z), Element{z, {}});
+  for (std::size_t r = 0; r < of_runs.size(); ++r) {
+    if (of_runs[r] == nullptr || along[r] == nullptr) continue;
+    std::map<std::int64_t, double> of_run;
+    for (std::size_t k = 0; k < std::min(along[r]->values.size(), of_runs[r]->values.size()); ++k)
+      of_run[key(along[r]->values[k])] = of_runs[r]->values[k];
+    for (auto& [at, element] : elements) {
+      const auto here = of_run.find(at);
+      const double value = here == of_run.end() ? named.elsewhere : here->second;
+      if (std::isfinite(value)) element.values.push_back(value);
+    }
+  }
+  const bool is_abscissa = first.name == named.along;
+  Result r{
+      .name = first.name, .shape = {elements.size()}, .unit = first.unit, .n = with.size(), .n_of = "runs"};
+  for (const auto& [at, element] : elements)
+    r.values.push_back(is_abscissa ? element.abscissa : element.values.empty() ? kNaN : mean(element.values));
+  r.convention = is_abscissa ? fmt::format("those of all runs; in the first: {}", first.convention)
+                             : convention_of(with, of_runs.size(), "mean, at equal abscissas,");
+  r.no_interval = "no interval is computed for the elements of an array";
+  r.source = first.source;
+  return r;
+}
+
+/// NAME_low or NAME_high of an array NAME: that end of the interval over the runs of each element.
+/// \param arrays [runs] NAME, or null \param ends, other [runs] the ends of the runs' own intervals, or null
+Result pooled_ends(const std::string& name, const std::vector<const Result*>& arrays,
+                   const std::vector<const Result*>& ends, const std::vector<const Result*>& other) {
+  const std::vector<const Result*> with = without_null(arrays);
+  const bool low = name.ends_with("_low");
+  std::size_t size = with.front()->values.size();
+  for (const Result* r : with) size = std::min(size, r->values.size());
+  Result r{.name = name, .shape = {size}, .unit = with.front()->unit, .n = with.size(), .n_of = "runs"};
+  for (std::size_t e = 0; e < size; ++e) {
+    Values v;
+    double own = kNaN;
+    for (std::size_t run = 0; run < arrays.size(); ++run) {
+      if (arrays[run] == nullptr || !std::isfinite(arrays[run]->values[e])) continue;
+      const bool known = ends[run] != nullptr && other[run] != nullptr && e < ends[run]->values.size() &&
+                         e < other[run]->values.size();
+      const double width = known ? std::abs(ends[run]->values[e] - other[run]->values[e]) : kNaN;
+      if (known) own = ends[run]->values[e];
+      v.values.push_back(arrays[run]->values[e]);
+      v.errors.push_back(std::isfinite(width) ? std::optional(width / (2 * kStandardErrors)) : std::nullopt);
+      v.methods.emplace_back("of each run");
+    }
+    const std::optional<Interval> interval = v.values.size() > 1 ? interval_over_runs(v) : std::nullopt;
+    // One run has its own interval; runs that agree to the last digit have that of any of them.
+    r.values.push_back(!interval ? own : low ? interval->low : interval->high);
+  }
+  r.convention = convention_of(
+      with, arrays.size(), fmt::format("{} end of the 95 % interval of the mean", low ? "lower" : "upper"));
+  r.no_interval = "an end of an interval";
+  r.source = with.front()->source;
   return r;
 }
 
@@ -199,6 +290,40 @@ Result pooled_array(const std::vector<const Result*>& with, std::size_t runs) {
   r.no_interval = "no interval is computed for the elements of an array";
   r.source = first.source;
   return r;
+}
+
+/// The array of which a result is an end of the intervals, and the result with their other ends; empty if the
+/// result is no such end.
+std::pair<std::string, std::string> interval_of(const std::string& name) {
+  for (const auto& [end, other] : {std::pair<std::string, std::string>{"_low", "_high"}, {"_high", "_low"}})
+    if (name.ends_with(end)) {
+      const std::string array = name.substr(0, name.size() - end.size());
+      return {array, array + other};
+    }
+  return {};
+}
+
+/// A sparse profile or an end of intervals, which is pooled by other results; nullopt for another result.
+std::optional<Result> pooled_by_others(const std::vector<std::vector<Result>>& runs,
+                                       const std::string& name) {
+  const std::vector<const Result*> of_runs = each(runs, name);
+  const auto missing = [&](const std::string& what) {
+    return absent_result(name, fmt::format("it is pooled by {}, which no run has", what),
+                         find_result(runs.front(), name).source);
+  };
+  if (const std::string along(named_result(name).along); !along.empty()) {
+    if (without_null(of_runs).empty()) return std::nullopt;
+    const std::vector<const Result*> abscissas = each(runs, along);
+    return without_null(abscissas).empty() ? missing(along) : pooled_profile(of_runs, abscissas);
+  }
+  if (const auto [array, other] = interval_of(name); !array.empty()) {
+    const std::vector<const Result*> arrays = each(runs, array), with = without_null(arrays);
+    if (with.empty()) return without_null(of_runs).empty() ? std::nullopt : std::optional(missing(array));
+    // One run alone has the intervals that it has, or none.
+    if (with.size() == 1 && without_null(of_runs).empty()) return std::nullopt;
+    return pooled_ends(name, arrays, of_runs, each(runs, other));
+  }
+  return std::nullopt;
 }
 
 /// Whether a number may be equal in two runs by chance: a count, or a ratio of small counts.
@@ -237,7 +362,22 @@ std::vector<std::size_t> repeated_runs(const std::vector<std::vector<Result>>& r
   return first;
 }
 
-std::vector<Result> pool(const std::vector<std::vector<Result>>& runs) {
+std::vector<std::string> needed_to_pool(const std::vector<std::string>& only) {
+  std::vector<std::string> needed = only;
+  const std::vector<std::string> known = result_names();
+  const auto need = [&](const std::string& name) {
+    if (std::find(needed.begin(), needed.end(), name) == needed.end() &&
+        std::find(known.begin(), known.end(), name) != known.end())
+      needed.push_back(name);
+  };
+  for (const std::string& name : only) {
+    if (const std::string along(named_result(name).along); !along.empty()) need(along);
+    if (const auto [array, other] = interval_of(name); !array.empty()) need(array), need(other);
+  }
+  return needed;
+}
+
+std::vector<Result> pool(const std::vector<std::vector<Result>>& runs, const std::vector<std::string>& only) {
   assert(!runs.empty());
   const std::vector<std::size_t> first = repeated_runs(runs);
   for (std::size_t i = 0; i < runs.size(); ++i)
@@ -248,6 +388,10 @@ std::vector<Result> pool(const std::vector<std::vector<Result>>& runs) {
                                     first[i] + 1, i + 1));
   std::vector<Result> pooled;
   for (const Result& like : runs.front()) {
+    if (auto by_others = pooled_by_others(runs, like.name)) {
+      pooled.push_back(std::move(*by_others));
+      continue;
+    }
     std::vector<const Result*> with;
     std::vector<double> of_runs;
     const Result* none = nullptr;
@@ -267,6 +411,9 @@ std::vector<Result> pool(const std::vector<std::vector<Result>>& runs) {
     else
       pooled.push_back(pooled_array(with, runs.size()));
   }
+  if (!only.empty())
+    std::erase_if(pooled,
+                  [&](const Result& r) { return std::find(only.begin(), only.end(), r.name) == only.end(); });
   return pooled;
 }
 

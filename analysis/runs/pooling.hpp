@@ -21,12 +21,20 @@ namespace twincell::analysis {
 ///   runs (over their tracers or cycles). Without a slip in any run, the interval of p_s is exact binomial
 ///   over the trials of all runs
 /// - Words (phase, drift): the word of most runs, with the counts; absent if two words tie
-/// - Arrays: pooled element by element, up to the end of the shortest. Values of single beads are not pooled,
+/// - Arrays: pooled element by element, up to the end of the shortest. Elements of sparse profiles
+///   (NamedResult::along) are matched by their abscissas. NAME_low and NAME_high of an array NAME are the
+///   ends of the interval of each pooled element, as for numbers. Values of single beads are not pooled,
 ///   because the beads of different runs do not correspond
 ///
 /// `n` is the number of runs, and `of_runs` has the value of each run (NaN if a run has none).
+/// \param only names of the requested results; empty: all
 /// \pre runs is not empty \throws ConfigError if one run repeats another (repeated_runs)
-std::vector<Result> pool(const std::vector<std::vector<Result>>& runs);
+std::vector<Result> pool(const std::vector<std::vector<Result>>& runs,
+                         const std::vector<std::string>& only = {});
+
+/// The results that every run must have so that `only` can be pooled: those, the abscissas of profiles, and
+/// the arrays and both ends of intervals.
+std::vector<std::string> needed_to_pool(const std::vector<std::string>& only);
 
 /// For each run, the index of the first run whose results are identical to the last bit, or its own index if
 /// there is no such run. Identical results mean that the same run was given twice, or that a seed has no

@@ -121,7 +121,10 @@ std::vector<Window> analyze_windows(const TrajectorySource& trajectory, const An
   AnalysisOptions one = options;
   one.discard_cycles = 0;
   one.cycles = cycles;
-  if (!one.rest_height) one.rest_height = rest_height_of(trajectory);
+  if (!one.rest_height) {
+    one.rest_height = rest_height_of(trajectory);
+    one.rest_height_is = "of the first frame of the run, at rest";
+  }
   std::vector<Window> windows;
   for (const Place& place : places) {
     Window window{.first_cycle = place.first_cycle, .cycles = cycles, .drive = {}, .results = {}};

@@ -203,6 +203,40 @@ bool maximise_likelihood(const Law& law, Selected& selected, FitReport& report) 
   return false;
 }
 
+/// The highest maximum that is reached from `report` and from the starts of the law: the likelihood of a bent
+/// line has one between any two points, and a kink at every point. \returns whether one was reached
+bool best_likelihood(const Law& law, Selected& selected, FitReport& report) {
+  constexpr std::size_t kMostStarts = 8;
+  std::vector<std::vector<double>> starts = law.starts(selected.points);
+  std::vector<std::pair<double, std::size_t>> ranked;
+  for (std::size_t k = 0; k < starts.size(); ++k) {
+    const double likelihood = log_likelihood(law, selected.frequencies, starts[k]);
+    if (std::isfinite(likelihood)) ranked.emplace_back(-likelihood, k);
+  }
+  std::sort(ranked.begin(), ranked.end());
+  ranked.resize(std::min(ranked.size(), kMostStarts));
+  std::vector<std::vector<double>> tried = {report.values};
+  for (const auto& [rank, k] : ranked) tried.push_back(starts[k]);
+  std::optional<std::pair<FitReport, Selected>> best;
+  double most = -INFINITY;
+  for (const std::vector<double>& start : tried) {
+    FitReport fit = report;
+    fit.values = start;
+    Selected points = selected;
+    if (!std::isfinite(log_likelihood(law, selected.frequencies, start)) ||
+        !maximise_likelihood(law, points, fit))
+      continue;
+    const double reached = log_likelihood(law, selected.frequencies, fit.values);
+    if (!(reached > most)) continue;
+    most = reached;
+    best.emplace(std::move(fit), std::move(points));
+  }
+  if (!best) return false;
+  report = std::move(best->first);
+  selected = std::move(best->second);
+  return true;
+}
+
 double correlation_of(const std::vector<FitPoint>& points, const std::vector<double>& curve) {
   const auto n = static_cast<double>(points.size());
   double y = 0, f = 0;
@@ -416,7 +450,7 @@ CurveFit fit_curve(const Law& law, const std::vector<DataPoint>& points, const F
   result.weighted = selected.weighted;
   result.fit = best_of_starts(law, selected);
   if (!selected.frequencies.empty()) {
-    result.likelihood = maximise_likelihood(law, selected, result.fit);
+    result.likelihood = best_likelihood(law, selected, result.fit);
     if (result.likelihood)
       result.weighted = true, result.n_used += result.n_zero;
     else if (result.n_zero > 0)

@@ -119,6 +119,7 @@ nlohmann::json json_of(const CurveFit& fit, const std::vector<DataPoint>& points
                        {"level", fit.intervals[p]->level},
                        {"method", fit.intervals[p]->method}};
   }
+  j["covariance_of"] = report.names;  // JSON sorts the keys of "parameters"
   j["covariance"] = nlohmann::json::array();
   for (Eigen::Index r = 0; r < report.covariance.rows(); ++r) {
     j["covariance"].push_back(nlohmann::json::array());

@@ -56,6 +56,19 @@ TEST(Differences, CameraAndRemainderAddUp) {
   EXPECT_NE(d.attribution().find("camera and tracking cause 83 %"), std::string::npos) << d.attribution();
 }
 
+// The lattice of 44.75 degrees is that of -15.25 degrees.
+TEST(Differences, OrientationsAreComparedByTheirPeriod) {
+  const auto turned = [](Side side, double degrees) {
+    auto r = run(side, 1, 0.01);
+    r.results = {number("orientation", degrees, 0.1)};
+    return r;
+  };
+  const Difference d = only(
+      {turned(Side::experiment, -14.6), turned(Side::simulation, 44.7), turned(Side::simulation, -14.9)});
+  EXPECT_NEAR(d.difference(), 0.5, 1e-9);
+  EXPECT_NEAR(d.seeds.value(), 0.4 / std::sqrt(2.0), 1e-9);
+}
+
 TEST(Differences, TheHeightIsNamedIfThereAreSeveral) {
   Runs runs = {run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.5, 0.01)};
   const auto text = [&] {

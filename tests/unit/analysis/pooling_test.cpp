@@ -114,6 +114,66 @@ TEST(Pooling, NoSlipInAnyRunHasTheLimitOfAllTrials) {
 TEST(Pooling, AnglesOfALatticeComeBackAfter60Degrees) {
   const double pooled = pool(runs_of("orientation", {44, -14, 45})).front().value();
   EXPECT_NEAR(std::remainder(pooled - 45, 60), 0, 0.4);
+  EXPECT_NEAR(pooled, 15, 30 + 1e-9);  // -15 ... 45
+  for (const double angle : {-15.0, -14.9, 0.0, 30.0, 44.9}) {
+    const Result r = pool(runs_of("orientation", {angle, angle})).front();
+    EXPECT_NEAR(r.value(), angle, 1e-9);
+  }
+}
+
+// A run with a bead that overlaps the plate begins a slab lower, and one with a gap lacks a slab.
+TEST(Pooling, SparseProfilesAreMatchedByTheirHeights) {
+  const auto profile = [](const std::vector<double>& z, const std::vector<double>& phi,
+                          const std::vector<double>& t) {
+    std::vector<Result> run;
+    for (const auto& [name, values] : {std::pair{"profile_z", z}, {"phi_z", phi}, {"T_z_z", t}})
+      run.push_back({.name = name, .values = values, .shape = {values.size()}});
+    return run;
+  };
+  const std::vector<std::vector<Result>> runs = {profile({-1.5, -0.5, 0.5}, {0.002, 0.04, 0.08}, {9, 8, 7}),
+                                                 profile({-0.5, 0.5, 2.5}, {0.02, 0.06, 0.01}, {6, 5, 4})};
+  const std::vector<Result> pooled = pool(runs);
+  EXPECT_EQ(pooled[0].values, (std::vector<double>{-1.5, -0.5, 0.5, 2.5}));
+  const std::vector<double> phi = {0.001, 0.03, 0.07, 0.005}, t = {9, 7, 6, 4};
+  ASSERT_EQ(pooled[1].shape, std::vector<std::size_t>{4});
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_NEAR(pooled[1].values[k], phi[k], 1e-12) << k;
+    EXPECT_NEAR(pooled[2].values[k], t[k], 1e-12) << k;
+  }
+  EXPECT_EQ(needed_to_pool({"phi_z", "T_g"}), (std::vector<std::string>{"phi_z", "T_g", "profile_z"}));
+  const std::vector<Result> only = pool(runs, {"phi_z"});
+  ASSERT_EQ(only.size(), 1U);
+  EXPECT_EQ(only[0].values.size(), 4U);
+  EXPECT_NE(pool({{runs[0][1]}, {runs[1][1]}}).front().absent.find("profile_z"), std::string::npos);
+}
+
+// Each run has a small interval of its own and another mean: the interval is that of the mean over the runs.
+TEST(Pooling, ElementsOfArraysHaveTheIntervalOverTheRuns) {
+  std::mt19937_64 generator(5);
+  std::normal_distribution<double> between(0, 1), within(0, 0.1);
+  constexpr std::size_t kElements = 40;
+  constexpr int kTrials = 25;
+  int covered = 0, all = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::vector<std::vector<Result>> runs;
+    for (int run = 0; run < 5; ++run) {
+      std::vector<double> mean, low, high;
+      for (std::size_t e = 0; e < kElements; ++e) {
+        mean.push_back(7 + between(generator) + within(generator));
+        low.push_back(mean.back() - 0.196), high.push_back(mean.back() + 0.196);
+      }
+      std::vector<Result> one;
+      for (const auto& [name, values] : {std::pair{"g_r", mean}, {"g_r_low", low}, {"g_r_high", high}})
+        one.push_back({.name = name, .values = values, .shape = {kElements}});
+      runs.push_back(one);
+    }
+    const std::vector<Result> pooled = pool(runs);
+    for (std::size_t e = 0; e < kElements; ++e, ++all)
+      covered +=
+          find_result(pooled, "g_r_low").values[e] <= 7 && 7 <= find_result(pooled, "g_r_high").values[e] ? 1
+                                                                                                          : 0;
+  }
+  EXPECT_NEAR(100.0 * covered / all, 95, 2.5);
 }
 
 TEST(Pooling, WordsAreThoseOfMostRuns) {

@@ -44,6 +44,21 @@ TEST(Tracers, OfARandomBedAreOnePerColumnNearMidHeight) {
   EXPECT_NEAR(sum / 20, (bottom + 19.8) / 2, 0.5);
 }
 
+TEST(Tracers, WholePeriodsChangeNothing) {
+  TrajectoryInfo info;
+  info.box.upper = Vec3(20, 1, 40);
+  info.box.boundary[0] = Boundary::periodic;
+  Frame frame;
+  std::mt19937_64 generator(2);
+  std::uniform_real_distribution<double> x(0, 20), z(0, 20);
+  std::uniform_int_distribution<int> turns(-1, 1);
+  for (int i = 0; i < 400; ++i) frame.position.emplace_back(x(generator), 0, z(generator));
+  const std::vector<std::size_t> slots = choose_tracers(info, frame).slots;
+  EXPECT_EQ(slots.size(), 20U);
+  for (Vec3& r : frame.position) r.x() += 20 * turns(generator);
+  EXPECT_EQ(choose_tracers(info, frame).slots, slots);
+}
+
 TEST(Tracers, MarkedOnesAreTaken) {
   MemoryTrajectory bed = test::rigid_bed({.gamma = 1.5});
   bed.info().tracer.assign(bed.info().n_beads, 0);

@@ -142,6 +142,23 @@ TEST(BedFlight, OfAFilmWithNoiseIsTheSame) {
   EXPECT_LT(flight.interval->high - flight.interval->low, 0.1);
 }
 
+// The second difference of 60 beads is uncertain by 0.1 g.
+TEST(BedFlight, OfFewNoisyBeadsIsNotCut) {
+  for (const int phases : {20, 40})
+    for (const double gamma : {1.5, 2.0}) {
+      const auto clean =
+          test::rigid_bed({.gamma = gamma, .columns = 12, .rows = 5, .phases = phases, .cycles = 40});
+      const Result flight =
+          find_result(analyze(with_noise(clean, 0.03, 1), {.only = {"flight_time"}}), "flight_time");
+      const double exact = flight_of_rigid_bed(gamma);
+      test::validate({"V5.17",
+                      "flight of 60 beads known to 0.03 sigma, Gamma = " + text(gamma) + ", " + text(phases) +
+                          " frames per cycle, t0",
+                      exact, 0.015 * exact, "closed form"},
+                     flight.value());
+    }
+}
+
 TEST(BedFlight, ABedThatStaysOnItsPlateHasNone) {
   for (const double gamma : {0.5, 0.9, 0.99}) {
     const auto results = analyze(test::rigid_bed({.gamma = gamma, .columns = 8, .rows = 3}),

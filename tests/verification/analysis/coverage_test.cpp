@@ -321,23 +321,26 @@ void cover_the_bounce_of_tracers() {
   constexpr int kPhases = 8;
   constexpr double kBounce = 0.3, kRest = 5;
   for (const std::size_t tracers : {10, 20}) {
-    const auto make = [&](int cycles, Random& random) {
-      std::vector<double> rest, bounce;
-      for (std::size_t t = 0; t < tracers; ++t) {
-        rest.push_back(kRest + 0.3 * normal(random));
-        bounce.push_back(kBounce + 0.1 * normal(random));
-      }
-      return line(cycles, kPhases, tracers, [&](std::size_t t, int, int k) {
-        return rest[t] + bounce[t] * std::sin(2 * std::numbers::pi * k / kPhases) + 0.01 * normal(random);
-      });
+    // `wave` times the bounce of a tracer is added to its height at rest.
+    const auto bouncing = [&](double (*wave)(double)) {
+      return [&, wave](int cycles, Random& random) {
+        std::vector<double> rest, bounce;
+        for (std::size_t t = 0; t < tracers; ++t) {
+          rest.push_back(kRest + 0.3 * normal(random));
+          bounce.push_back(kBounce + 0.1 * normal(random));
+        }
+        return line(cycles, kPhases, tracers, [&](std::size_t t, int, int k) {
+          return rest[t] + bounce[t] * wave(2 * std::numbers::pi * k / kPhases) + 0.01 * normal(random);
+        });
+      };
     };
     const double rms = kBounce / std::sqrt(2.0);
-    cover(std::to_string(tracers) + " tracers that bounce", make, 8,
-          {{"s_b", rms},
-           {"s_b_variance", rms},
-           {"s_b_about_rest", rms},
-           {"s_b_as_printed", std::hypot(kRest, rms)}},
-          {}, 7);
+    cover(std::to_string(tracers) + " tracers that bounce", bouncing([](double x) { return std::sin(x); }), 8,
+          {{"s_b", rms}, {"s_b_variance", rms}, {"s_b_as_printed", std::hypot(kRest, rms)}}, {}, 7);
+    // No phase is below the height at rest.
+    cover(std::to_string(tracers) + " tracers that bounce",
+          bouncing([](double x) { return 1 - std::cos(x); }), 8,
+          {{"s_b_about_rest", kBounce * std::sqrt(1.5)}}, {}, 7);
   }
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <random>
 #include <sstream>
 
@@ -40,6 +41,30 @@ TEST(BouncingThreshold, TableOfTheRigidInelasticBed) {
     test::validate({"V4.9", at.str(), variance, 1e-3, "closed form"}, s_b);
     test::validate({"V4.9", at.str() + " about rest", about_rest, 1e-3, "closed form"}, s_rest);
   }
+}
+
+// A file whose first frame is one of a flight does not know where the bed rests.
+TEST(BouncingThreshold, TheHeightOfAFlyingBedIsNoRestHeight) {
+  const auto film = test::rigid_bed({.gamma = 2.0, .columns = 6, .rows = 5, .phases = 40, .cycles = 3});
+  // The film with the heights of its first frame moved by `rise`, and with velocities if a speed is stated.
+  const auto about_rest = [&](double rise, std::optional<double> speed) {
+    TrajectoryInfo info = film.info();
+    info.columns.velocity = speed.has_value();
+    MemoryTrajectory changed(info);
+    for (std::size_t f = 0; f < film.n_frames(); ++f) {
+      Frame frame = film.frames()[f];
+      if (f == 0)
+        for (Vec3& r : frame.position) r.z() += rise;
+      if (speed) frame.velocity.assign(frame.position.size(), Vec3(0, 0, *speed));
+      changed.append(frame);
+    }
+    return find_result(analyze(changed, {.only = {"s_b_about_rest"}}), "s_b_about_rest");
+  };
+  EXPECT_TRUE(about_rest(0, {}).present());
+  EXPECT_NE(about_rest(0.5, {}).absent.find("do not lie at rest in the first"), std::string::npos);
+  // Velocities decide: a bed that is compacted lies lower later.
+  EXPECT_TRUE(about_rest(0.5, 0.0).present());
+  EXPECT_NE(about_rest(0, 3.0).absent.find("does not lie at rest in the first frame"), std::string::npos);
 }
 
 TEST(BouncingThreshold, CriticalGamma) {
