@@ -97,8 +97,7 @@ class Orientation : public Observable {
   /// Maps a mean angle, and its interval with it, back to the range -15 … 45.
   static Result back(Result angle) {
     if (!angle.present()) return angle;
-    const double turns = kLatticePeriodDegrees *
-                         std::floor((angle.value() + kLatticePeriodDegrees / 4) / kLatticePeriodDegrees);
+    const double turns = turns_of_lattice(angle.value());
     angle.values[0] -= turns;
     if (angle.interval) {
       angle.interval->low -= turns;
@@ -115,6 +114,10 @@ class Orientation : public Observable {
 };
 
 }  // namespace
+
+double turns_of_lattice(double degrees) {
+  return kLatticePeriodDegrees * std::floor((degrees - kLowestOrientation) / kLatticePeriodDegrees);
+}
 
 constinit const ObservableEntry orientation_observable = {kResults, &make_observable<Orientation>};
 

@@ -10,6 +10,10 @@ namespace twincell::analysis {
 /// lattice directions one third is A, one third B, and one third neither.
 inline constexpr double kOrientationWidth = 10;
 
+/// Whole periods, in degrees, by which a mean of unwrapped lattice angles lies outside the range of
+/// lattice_angle, -15 to below 45.
+double turns_of_lattice(double degrees);
+
 /// Orientation of the lattice with the neighbour rule of the analysis. Results:
 ///
 /// - ordered_fraction: scalar, share of the enclosed beads with psi6 > kOrdered, mean over frames

@@ -15,6 +15,7 @@
 #include <string_view>
 
 #include "analysis/neighbours/bond_order.hpp"
+#include "analysis/order/orientation.hpp"
 #include "analysis/runs/bed_keys.hpp"
 #include "analysis/runs/phase_diagram.hpp"
 #include "analysis/statistics/statistics.hpp"
@@ -137,10 +138,7 @@ Result pooled_scalar(const std::vector<const Result*>& with, const std::vector<d
     return r;
   }
   // The mean of unwrapped angles is put back into the range of the angle of a run.
-  const double turns =
-      rule == Pooling::angle
-          ? kLatticePeriodDegrees * std::floor((mean(v.values) - kLowestOrientation) / kLatticePeriodDegrees)
-          : 0;
+  const double turns = rule == Pooling::angle ? turns_of_lattice(mean(v.values)) : 0;
   r.values = {back(rule, mean(v.values)) - turns};
   r.convention =
       convention_of(with, of_runs.size(), rule == Pooling::root_mean_square ? "root mean square" : "mean");

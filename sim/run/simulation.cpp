@@ -128,9 +128,7 @@ RunState placed(const Scene& scene, Progress& progress) {
   require_frames(scene, plan, scene.phase.value_or(0));
   Start start = make_start(scene, progress);
   const double phase = start.phase.value_or(scene.phase.value_or(0));
-  const Vec3 plate = scene.in_motion
-                         ? Vec3(scene.envelope.at(phase) * scene.drive.displacement_in_space(phase))
-                         : Vec3::Zero();
+  const Vec3 plate = scene.in_motion ? cell_displacement(scene, phase) : Vec3::Zero();
   require_sound(start.beads, scene, 0.05, progress, plate);
   require_frames(scene, plan, phase);
   RunState state;

@@ -15,6 +15,11 @@ inline bool plate_follows_drive(const Scene& scene) {
   return scene.drive.axis != Axis::z || scene.bottom != Edge::wall || scene.bottom_moves;
 }
 
+/// Displacement of the walls that move, at a phase of the first cycle, sigma.
+inline Vec3 cell_displacement(const Scene& scene, double phase) {
+  return scene.envelope.at(phase) * scene.drive.displacement_in_space(phase);
+}
+
 /// Largest difference of two displacements that are the same one, sigma.
 inline constexpr double kSameDisplacement = 1e-9;
 

@@ -112,9 +112,8 @@ Start start_in_motion(const Scene& scene, const TrajectoryInfo& info, const Fram
 
 std::string displaced_wall(const Scene& scene, const TrajectoryInfo& info, const Frame& frame, double phase) {
   if (std::isnan(frame.plate_height)) return {};
-  const double stroke = scene.envelope.at(phase);
-  const Vec3 here = stroke * scene.drive.displacement_in_space(phase);
-  if (const double plate = stroke * scene.drive.displacement(phase);
+  const Vec3 here = cell_displacement(scene, phase);
+  if (const double plate = scene.envelope.at(phase) * scene.drive.displacement(phase);
       !plate_agrees(scene, frame.plate_height, plate))
     return fmt::format(
         " has its plate at {:g} sigma, but this drive puts it at {:g}; to change the amplitude, "

@@ -24,16 +24,13 @@ namespace {
 
 /// Median distance to the nearest other bead (spacing.hpp) within one period.
 double spacing_of(const Snapshot& s) {
+  Box period{.lower = s.lower, .upper = s.upper};
+  for (std::size_t k = 0; k < 3; ++k)
+    period.boundary[k] =
+        s.periodic[k] && period.size()[static_cast<int>(k)] > 0 ? Boundary::periodic : Boundary::open;
   std::vector<Vec3> centres;
   centres.reserve(s.beads.size());
-  for (const SnapshotBead& b : s.beads) {
-    Vec3 r = b.position;
-    for (int k = 0; k < 3; ++k)
-      if (const double period = s.upper[k] - s.lower[k];
-          s.periodic[static_cast<std::size_t>(k)] && period > 0)
-        r[k] -= period * std::floor((r[k] - s.lower[k]) / period);
-    centres.push_back(r);
-  }
+  for (const SnapshotBead& b : s.beads) centres.push_back(period.wrap(b.position));
   return median_spacing(centres);
 }
 
