@@ -270,15 +270,11 @@ void run(const Common& common, const AnalyzeOptions& options) {
   if (readers.size() > 1 && !options.figures.empty())
     throw ConfigError({.file = {}, .key = "--figures"},
                       fmt::format("draws one trajectory; {} were given", readers.size()));
-  std::vector<std::vector<analysis::Result>> runs;
-  analysis::AnalysisOptions of_run = options.analysis;
-  if (readers.size() > 1) of_run.only = analysis::needed_to_pool(of_run.only);
-  for (const TrajectorySource* trajectory : trajectories) {
-    ProgressBar progress(common, readers.size() > 1 ? trajectory->name() : "analyze");
-    runs.push_back(analysis::analyze(*trajectory, of_run, progress, profile.times()));
-  }
-  const std::vector<analysis::Result> results =
-      runs.size() > 1 ? analysis::pool(runs, options.analysis.only) : runs.front();
+  const std::vector<analysis::Result> results = analysis::analyze_together(
+      trajectories.size(), options.analysis, [&](std::size_t i, const analysis::AnalysisOptions& of_run) {
+        ProgressBar progress(common, trajectories.size() > 1 ? trajectories[i]->name() : "analyze");
+        return analysis::analyze(*trajectories[i], of_run, progress, profile.times());
+      });
 
   Provenance provenance = common.provenance();
   provenance.inputs.assign(options.trajectories.begin(), options.trajectories.end());
@@ -294,7 +290,7 @@ void run(const Common& common, const AnalyzeOptions& options) {
 
   nlohmann::json document;
   document["results"] = nlohmann::json::parse(analysis::results_json(results));
-  if (runs.size() > 1) document["runs"] = options.trajectories;
+  if (trajectories.size() > 1) document["runs"] = options.trajectories;
   document["provenance"] = nlohmann::json::parse(provenance_json);
   std::string text = common.verbose ? analysis::results_text(results)
                                     : results_summary(results, !options.analysis.only.empty());

@@ -47,13 +47,11 @@ Results analyzed(const std::vector<std::shared_ptr<Trajectory>>& trajectories,
   if (sources.empty()) throw ConfigError({.file = {}, .key = "trajectory"}, "the list has no trajectory.");
   analysis::require_one_condition(sources);
   return unlocked(callback, [&](Progress& progress) {
-    std::vector<std::vector<analysis::Result>> runs;
-    runs.reserve(sources.size());
-    analysis::AnalysisOptions of_run = options;
-    if (sources.size() > 1) of_run.only = analysis::needed_to_pool(of_run.only);
-    for (const TrajectorySource* source : sources)
-      runs.push_back(analysis::analyze(*source, of_run, progress));
-    return Results{runs.size() > 1 ? analysis::pool(runs, options.only) : runs.front(), provenance.to_json()};
+    return Results{analysis::analyze_together(sources.size(), options,
+                                              [&](std::size_t i, const analysis::AnalysisOptions& of_run) {
+                                                return analysis::analyze(*sources[i], of_run, progress);
+                                              }),
+                   provenance.to_json()};
   });
 }
 

@@ -415,6 +415,17 @@ std::vector<Result> pool(const std::vector<std::vector<Result>>& runs, const std
   return pooled;
 }
 
+std::vector<Result> analyze_together(
+    std::size_t runs, const AnalysisOptions& options,
+    const std::function<std::vector<Result>(std::size_t, const AnalysisOptions&)>& analyse) {
+  if (runs == 1) return analyse(0, options);
+  AnalysisOptions of_run = options;
+  of_run.only = needed_to_pool(options.only);
+  std::vector<std::vector<Result>> results;
+  for (std::size_t i = 0; i < runs; ++i) results.push_back(analyse(i, of_run));
+  return pool(results, options.only);
+}
+
 RunEnds::RunEnds(const TrajectorySource& run) : n_frames(run.n_frames()) {
   if (n_frames == 0) return;
   run.read(0, first);

@@ -3,6 +3,7 @@
 /// Pooling: several runs of one bed that differ by chance alone (seeds, repeats of an experiment) as one
 /// measurement.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,12 @@ std::vector<Result> pool(const std::vector<std::vector<Result>>& runs,
 /// The results that every run must have so that `only` can be pooled: those, the abscissas of profiles, and
 /// the arrays and both ends of intervals.
 std::vector<std::string> needed_to_pool(const std::vector<std::string>& only);
+
+/// The results of one run, or the pooled results of several. \param analyse analyses the run of that index
+/// with the given options, which request what pooling needs \pre runs > 0 \throws as pool()
+std::vector<Result> analyze_together(
+    std::size_t runs, const AnalysisOptions& options,
+    const std::function<std::vector<Result>(std::size_t, const AnalysisOptions&)>& analyse);
 
 /// For each run, the index of the first run whose results are identical to the last bit, or its own index if
 /// there is no such run. Identical results mean that the same run was given twice, or that a seed has no
