@@ -132,39 +132,30 @@ calibration::TrackedFilm track_beads_of_table(const TrackOptions& o, const Commo
   return calibration::track_table(read_table(o.stack), std::move(options), o.film, progress, times);
 }
 
-void run(TrackOptions& o, const Common& common) {
-  Profile profile(o.profile);
-  (void)imaging::Scorer(o.truth.rows());  // refuse rows in the wrong order before the work
-  const std::filesystem::path parent = std::filesystem::path(o.output).parent_path();
-  o.film.folder = parent.empty() ? "." : parent;
-  o.film.threads = common.n_threads();
+/// Locates the beads of the frames, or reads them from a table, and links them.
+calibration::TrackedFilm track_stack(const TrackOptions& o, const Common& common, StageTimes* times) {
   const auto open = [&](const imaging::LocatorOptions& locator) {
     return open_for_locating(o.stack, o.film.locating, locator, common);
   };
-  const bool of_table = imaging::is_located_table(o.stack);
-  for (const auto& [given, option] :
-       {std::pair(!o.columns.empty(), "--columns"), {!o.picture.empty(), "--picture-size"}})
-    if (given && !of_table)
-      throw ConfigError({.file = {}, .key = option}, "applies to a table of located beads (.csv).");
-  calibration::TrackedFilm film = of_table ? track_beads_of_table(o, common, profile.times())
-                                           : calibration::track_film(
-                                                 open, o.stack, o.film,
-                                                 [&](const std::string& stage) -> std::unique_ptr<Progress> {
-                                                   return std::make_unique<ProgressBar>(common, stage);
-                                                 },
-                                                 profile.times());
+  const auto progress = [&](const std::string& stage) -> std::unique_ptr<Progress> {
+    return std::make_unique<ProgressBar>(common, stage);
+  };
+  return calibration::track_film(open, o.stack, o.film, progress, times);
+}
+
+/// Prints what the film contradicts or leaves open.
+void print_doubts(const TrackOptions& o, const calibration::TrackedFilm& film,
+                  const imaging::FrameRange& range, const Common& common) {
   const imaging::CellDescription& cell = film.cell;
   const imaging::TrackedStack& stack = film.stack;
-  imaging::TrackPlan& plan = film.plan;
   if (!cell.included.overridden.empty())
     note(common,
          fmt::format("values in {} take precedence over those measured in {}: {}", o.film.request.cell_file,
                      cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
   for (const std::string& doubt : imaging::implausible_numbers(imaging::shaken_cell(cell)))
     note(common, doubt);
-  const imaging::FrameRange range = of_table ? stack.range : imaging::frames_of(o.film.locating);
   if (!stack.spacing_doubt.empty()) note(common, stack.spacing_doubt);
-  if (of_table && range.first > 0 && stack.phases.locked())
+  if (imaging::is_located_table(o.stack) && range.first > 0 && stack.phases.locked())
     note(common,
          fmt::format("the first frame of {} has the number {}; its phase is {}, as frames count from 0 and "
                      "--first-phase is that of frame 0.",
@@ -172,35 +163,36 @@ void run(TrackOptions& o, const Common& common) {
   if (!film.check.disagreement.empty())
     note(common,
          "the stated drive does not fit the film: " + film.check.disagreement + " (--trust-stated-drive).");
-  if (!stack.phases.warning.empty()) note(common, stack.phases.warning + ".");
-  for (const std::string& doubt : {stack.missing_beads(), stack.paler_doubt(), stack.surplus_tracks(),
-                                   stack.scale_doubt(cell), stack.aspect_doubt(), stack.still_discs()})
+  for (const std::string& doubt :
+       {stack.phases.warning, stack.missing_beads(), stack.paler_doubt(), stack.surplus_tracks(),
+        stack.scale_doubt(cell), stack.aspect_doubt(), stack.still_discs()})
     if (!doubt.empty()) note(common, doubt + ".");
-  // Write the trajectory, then the table.
+}
+
+/// Writes the trajectory, then the table.
+void write_tracks(const TrackOptions& o, calibration::TrackedFilm& film, const imaging::FrameRange& range,
+                  const Common& common, StageTimes* times) {
   Provenance provenance = common.provenance();
-  provenance.config = cell.text;
+  provenance.config = film.cell.text;
   provenance.inputs.push_back(imaging::file_of_stack(o.stack));
   for (const std::string& file : {o.film.locating.mask, o.film.locating.background})
     if (!file.empty()) provenance.inputs.emplace_back(file);
-  plan.info.provenance_json = provenance.to_json();
-  {
-    Stage writing(profile.times(), "writing", "frames");
-    H5mdWriter writer(o.output, plan.info);
-    imaging::BedInCell watched(writer, plan.info, cell, stack.height_px);
-    imaging::write_trajectory(stack, plan, watched);
-    writer.finish();
-    for (const std::string& doubt : watched.doubts()) note(common, doubt);
-    if (!o.csv.empty()) write_csv(o.csv, stack, range);
-    writing.count(static_cast<double>(stack.frames.size()));
-  }
+  TrajectoryInfo& info = film.plan.info;
+  info.provenance_json = provenance.to_json();
+  Stage writing(times, "writing", "frames");
+  H5mdWriter writer(o.output, info);
+  imaging::BedInCell watched(writer, info, film.cell, film.stack.height_px);
+  imaging::write_trajectory(film.stack, film.plan, watched);
+  writer.finish();
+  for (const std::string& doubt : watched.doubts()) note(common, doubt);
+  if (!o.csv.empty()) write_csv(o.csv, film.stack, range);
+  writing.count(static_cast<double>(film.stack.frames.size()));
+}
 
-  if (!cell.pixels_per_sigma)
-    note(common, fmt::format("no scale was given: sigma is the bead diameter of {:.3f} px.",
-                             stack.locator.diameter_px));
-  if (!plan.info.columns.plate_height)
-    note(common, unknown_in_words(stack.phases, o.film.request.phase) +
-                     ": time is the frame number, and the height of the plate is absent.");
-  // Result.
+/// The result, as a document and as text.
+std::pair<nlohmann::json, std::string> summary(const TrackOptions& o, const calibration::TrackedFilm& film) {
+  const imaging::TrackedStack& stack = film.stack;
+  const TrajectoryInfo& info = film.plan.info;
   std::int64_t beads = 0;
   for (const imaging::TrackSummary& t : stack.tracks) beads += t.seen;
   nlohmann::json document = {{"stack", o.stack},
@@ -208,28 +200,55 @@ void run(TrackOptions& o, const Common& common) {
                              {"frames", stack.frames.size()},
                              {"beads_located", beads},
                              {"tracks", stack.n_tracks},
-                             {"slots", plan.info.n_beads},
+                             {"slots", info.n_beads},
                              {"outside_cell", stack.outside_cell},
                              {"wrong_radius", stack.wrong_radius},
                              {"paler", stack.paler}};
   if (stack.aspect)
     document["aspect"] = {{"value", stack.aspect->ratio}, {"standard_error", stack.aspect->error}};
-  document.update(nlohmann::json::parse(plan.info.tracking_json));
+  document.update(nlohmann::json::parse(info.tracking_json));
   if (const nlohmann::json said = imaging::restrictions(o.film.locating); !said.is_null())
     document["restrictions"] = said;
-  std::string text = fmt::format("{}, {} located, {} ({} written), {} outside the cell left out\n",
-                                 counted(stack.frames.size(), "frame"), counted(beads, "bead"),
-                                 counted(stack.n_tracks, "track"), plan.info.n_beads,
-                                 counted(stack.outside_cell, "detection"));
+  std::string text =
+      fmt::format("{}, {} located, {} ({} written), {} outside the cell left out\n",
+                  counted(stack.frames.size(), "frame"), counted(beads, "bead"),
+                  counted(stack.n_tracks, "track"), info.n_beads, counted(stack.outside_cell, "detection"));
   if (constexpr double kMany = 0.02;
       static_cast<double>(stack.wrong_radius) > kMany * static_cast<double>(beads))
     text += fmt::format(
         "{} candidates were left out as discs of another size; to locate beads of several sizes, use "
         "--diameter D1 D2 ...\n",
         stack.wrong_radius);
-  text += describe(stack);
+  return {std::move(document), text + describe(stack)};
+}
+
+void run(TrackOptions& o, const Common& common) {
+  Profile profile(o.profile);
+  (void)imaging::Scorer(o.truth.rows());  // refuse rows in the wrong order before the work
+  const std::filesystem::path parent = std::filesystem::path(o.output).parent_path();
+  o.film.folder = parent.empty() ? "." : parent;
+  o.film.threads = common.n_threads();
+  const bool of_table = imaging::is_located_table(o.stack);
+  for (const auto& [given, option] :
+       {std::pair(!o.columns.empty(), "--columns"), {!o.picture.empty(), "--picture-size"}})
+    if (given && !of_table)
+      throw ConfigError({.file = {}, .key = option}, "applies to a table of located beads (.csv).");
+
+  calibration::TrackedFilm film =
+      of_table ? track_beads_of_table(o, common, profile.times()) : track_stack(o, common, profile.times());
+  const imaging::FrameRange range = of_table ? film.stack.range : imaging::frames_of(o.film.locating);
+  print_doubts(o, film, range, common);
+  write_tracks(o, film, range, common, profile.times());
+  if (!film.cell.pixels_per_sigma)
+    note(common, fmt::format("no scale was given: sigma is the bead diameter of {:.3f} px.",
+                             film.stack.locator.diameter_px));
+  if (!film.plan.info.columns.plate_height)
+    note(common, unknown_in_words(film.stack.phases, o.film.request.phase) +
+                     ": time is the frame number, and the height of the plate is absent.");
+
+  auto [document, text] = summary(o, film);
   if (!o.truth.file.empty()) {
-    const imaging::Score s = score_against(o, stack, range);
+    const imaging::Score s = score_against(o, film.stack, range);
     document["truth"] = {{"recall", s.recall()},
                          {"precision", s.precision()},
                          {"rms_px", s.rms},

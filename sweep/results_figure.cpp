@@ -171,10 +171,110 @@ std::vector<std::string> distinguishing(const std::vector<Value>& values, const 
   return keys;
 }
 
-struct Rows {
+/// The result to draw, the chosen one or s_c or the first; none if the onsets are drawn.
+/// \throws InputError if the sweep has no scalar result, ConfigError if the chosen one is none
+std::string result_to_draw(const json& document, const std::string& chosen) {
+  if (chosen.empty() && !document.value("onsets", json::array()).empty()) return {};
+  const std::set<std::string> names = scalars(document);
+  if (names.empty())
+    throw InputError({.file = {}, .key = "the sweep"},
+                     "has no scalar result yet; sweep run computes its points.");
+  if (chosen.empty()) return names.contains("s_c") ? "s_c" : *names.begin();
+  if (!names.contains(chosen))
+    throw ConfigError(
+        {.file = {}, .key = "--result"},
+        fmt::format("'{}' is no scalar result of the sweep; it has {}.", chosen, fmt::join(names, ", ")));
+  return chosen;
+}
+
+/// Sorts the values of every curve by x, and the curves by the second axis: by its number, not by its text.
+/// \param order axes that distinguish values
+void sort_values(std::vector<Value>& values, const std::string& x, const std::vector<std::string>& order) {
+  std::stable_sort(values.begin(), values.end(), [&](const Value& a, const Value& b) {
+    return a.axes.value(x, 0.0) < b.axes.value(x, 0.0);
+  });
+  if (order.size() < 2) return;
+  const std::string second = order[0] == x ? order[1] : order[0];
+  std::stable_sort(values.begin(), values.end(), [&](const Value& a, const Value& b) {
+    const json p = a.axes.value(second, json()), q = b.axes.value(second, json());
+    return p.is_number() && q.is_number() ? p.get<double>() < q.get<double>() : json_text(p) < json_text(q);
+  });
+}
+
+/// Rows of data of one curve.
+struct PlottedCurve {
+  std::string name;
   std::string whole, lower, upper;  ///< values with intervals, lower limits, upper limits
-  std::size_t points = 0;
+  std::size_t points = 0;           ///< of `whole`
+
+  void add(double at, const Value& v) {
+    if (v.value) {
+      whole +=
+          fmt::format("{} {} {} {}\n", at, *v.value, v.low.value_or(*v.value), v.high.value_or(*v.value));
+      ++points;
+    } else if (v.low) {
+      lower += fmt::format("{} {}\n", at, *v.low);
+    } else if (v.high) {
+      upper += fmt::format("{} {}\n", at, *v.high);
+    }
+  }
 };
+
+/// The curves in the order of their first values.
+std::vector<PlottedCurve> curves_of(const std::vector<Value>& values, const std::string& x,
+                                    const std::vector<std::string>& order) {
+  std::vector<PlottedCurve> curves;
+  std::map<std::string, std::size_t> index;
+  for (const Value& v : values) {
+    const std::string name = curve_of(v, x, order);
+    const auto [it, added] = index.try_emplace(name, curves.size());
+    if (added) curves.push_back({.name = name, .whole = {}, .lower = {}, .upper = {}});
+    curves[it->second].add(v.axes.at(x).get<double>(), v);
+  }
+  return curves;
+}
+
+/// Writes the data of the figure block by block. \return the arguments of gnuplot's plot; empty without data
+std::string plot_curves(const std::vector<PlottedCurve>& curves, analysis::Figure& f) {
+  namespace style = analysis::figure_style;
+  // Without triangles, which are limits.
+  constexpr std::array kSymbols = {style::kCircle,
+                                   style::kSquare,
+                                   style::kDiamond,
+                                   style::unfilled(style::kCircle),
+                                   style::unfilled(style::kSquare),
+                                   style::unfilled(style::kDiamond)};
+  std::string clauses;
+  int block = 0;
+  const auto add = [&](const std::string& data, const std::string& columns, const std::string& look) {
+    f.data += (block > 0 ? "\n\n" : "") + data;
+    clauses +=
+        fmt::format("{}'{}.dat' index {} using {} {}", block > 0 ? ", " : "", f.name, block, columns, look);
+    ++block;
+  };
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    const PlottedCurve& curve = curves[c];
+    const std::string title =
+        curve.name.empty() ? "notitle"
+                           : fmt::format("title '{}' noenhanced", analysis::gnuplot_plain_text(curve.name));
+    const char* colour = analysis::colours::kCurves[c % analysis::colours::kCurves.size()];
+    if (curve.points > 1) add(curve.whole, "1:2", fmt::format("with lines lc rgb '{}' notitle", colour));
+    if (curve.points > 0)
+      add(curve.whole, "1:2:3:4",
+          fmt::format("with yerrorbars pt {} ps 1.1 lw {} lc rgb '{}' {}", kSymbols[c % kSymbols.size()],
+                      style::kLine, colour, title));
+    bool named = curve.points > 0;
+    for (const auto& [data, symbol] :
+         {std::pair(&curve.lower, style::kTriangle), std::pair(&curve.upper, style::kDown)})
+      if (!data->empty()) {
+        add(*data, "1:2",
+            fmt::format("with points pt {} ps 1.4 lc rgb '{}' {}", symbol, colour,
+                        named ? "notitle" : title));
+        named = true;
+      }
+  }
+  return clauses;
+}
 
 /// "drive.gamma at the onset of convection".
 std::string onset_label(const json& onset) {
@@ -192,25 +292,13 @@ analysis::Figure results_figure(const std::string& collected, const FigureOption
     throw ConfigError({.file = {}, .key = "--over"},
                       fmt::format("names {} axes; at most two can be drawn.", options.over.size()));
   const json document = json::parse(collected);
-  const bool onsets = options.result.empty() && !document.value("onsets", json::array()).empty();
-  const std::set<std::string> names = scalars(document);
-  std::string result = options.result;
-  if (!onsets && result.empty() && !names.empty()) result = names.contains("s_c") ? "s_c" : *names.begin();
-  if (!onsets && !names.contains(result)) {
-    if (names.empty())
-      throw InputError({.file = {}, .key = "the sweep"},
-                       "has no scalar result yet; sweep run computes its points.");
-    throw ConfigError(
-        {.file = {}, .key = "--result"},
-        fmt::format("'{}' is no scalar result of the sweep; it has {}.", result, fmt::join(names, ", ")));
-  }
+  const std::string result = result_to_draw(document, options.result);
+  const bool onsets = result.empty();
   std::vector<Value> values = onsets ? onsets_of(document) : values_of(document, result);
   const std::string x = horizontal(values, options);
   const std::vector<std::string> order = distinguishing(values, options);
+  sort_values(values, x, order);
 
-  std::stable_sort(values.begin(), values.end(), [&](const Value& a, const Value& b) {
-    return a.axes.value(x, 0.0) < b.axes.value(x, 0.0);
-  });
   const std::string y = onsets ? onset_label(document["onsets"][0]) : result;
   const auto key_label = [](const std::string& label, const std::string& key) {
     return with_unit(analysis::gnuplot_text(label), analysis::gnuplot_text(unit_of_key(key)));
@@ -219,75 +307,14 @@ analysis::Figure results_figure(const std::string& collected, const FigureOption
       y_axis{.label = onsets ? key_label(y, document["onsets"][0].value("key", ""))
                              : with_unit(analysis::gnuplot_symbol(y),
                                          analysis::gnuplot_formula(unit_of_result(document, result)))};
-  // Curves in the order of their first value of the second axis, not of its text.
-  std::vector<std::string> curves;
-  std::map<std::string, Rows> rows;
-  if (order.size() > 1) {
-    const std::string second = order[0] == x ? order[1] : order[0];
-    std::stable_sort(values.begin(), values.end(), [&](const Value& a, const Value& b) {
-      const json p = a.axes.value(second, json()), q = b.axes.value(second, json());
-      return p.is_number() && q.is_number() ? p.get<double>() < q.get<double>() : json_text(p) < json_text(q);
-    });
-  }
   for (const Value& v : values) {
-    const std::string curve = curve_of(v, x, order);
-    if (!rows.contains(curve)) curves.push_back(curve);
-    Rows& r = rows[curve];
-    const double at = v.axes.at(x).get<double>();
-    x_axis.show(at);
+    x_axis.show(v.axes.at(x).get<double>());
     for (const auto& end : {v.value, v.low, v.high})
       if (end) y_axis.show(*end);
-    if (v.value) {
-      r.whole +=
-          fmt::format("{} {} {} {}\n", at, *v.value, v.low.value_or(*v.value), v.high.value_or(*v.value));
-      ++r.points;
-    } else if (v.low) {
-      r.lower += fmt::format("{} {}\n", at, *v.low);
-    } else if (v.high) {
-      r.upper += fmt::format("{} {}\n", at, *v.high);
-    }
   }
-
   analysis::Figure f{.name = "sweep", .width = 620, .height = 500};
-  std::string clauses;
-  int block = 0;
-  const auto add = [&](const std::string& data, const std::string& columns, const std::string& style) {
-    f.data += (block > 0 ? "\n\n" : "") + data;
-    clauses +=
-        fmt::format("{}'{}.dat' index {} using {} {}", block > 0 ? ", " : "", f.name, block, columns, style);
-    ++block;
-  };
-  // Without triangles, which are limits.
-  constexpr int kCircle = analysis::figure_style::kCircle, kSquare = analysis::figure_style::kSquare,
-                kDiamond = analysis::figure_style::kDiamond;
-  constexpr std::array kSymbols = {kCircle,
-                                   kSquare,
-                                   kDiamond,
-                                   analysis::figure_style::unfilled(kCircle),
-                                   analysis::figure_style::unfilled(kSquare),
-                                   analysis::figure_style::unfilled(kDiamond)};
-  for (std::size_t c = 0; c < curves.size(); ++c) {
-    const Rows& r = rows[curves[c]];
-    const std::string title =
-        curves[c].empty() ? "notitle"
-                          : fmt::format("title '{}' noenhanced", analysis::gnuplot_plain_text(curves[c]));
-    const char* colour = analysis::colours::kCurves[c % analysis::colours::kCurves.size()];
-    const int symbol = kSymbols[c % kSymbols.size()];
-    if (r.points > 1) add(r.whole, "1:2", fmt::format("with lines lc rgb '{}' notitle", colour));
-    if (r.points > 0)
-      add(r.whole, "1:2:3:4",
-          fmt::format("with yerrorbars pt {} ps 1.1 lw {} lc rgb '{}' {}", symbol,
-                      analysis::figure_style::kLine, colour, title));
-    constexpr int kUp = analysis::figure_style::kTriangle, kDown = analysis::figure_style::kDown;
-    bool named = r.points > 0;
-    for (const auto& [data, limit] : {std::pair(&r.lower, kUp), std::pair(&r.upper, kDown)})
-      if (!data->empty()) {
-        add(*data, "1:2",
-            fmt::format("with points pt {} ps 1.4 lc rgb '{}' {}", limit, colour, named ? "notitle" : title));
-        named = true;
-      }
-  }
-  if (block == 0)
+  const std::string clauses = plot_curves(curves_of(values, x, order), f);
+  if (clauses.empty())
     throw InputError({.file = {}, .key = "the sweep"},
                      "has no value to draw yet; sweep run computes its points.");
   f.title = y + " against " + x;

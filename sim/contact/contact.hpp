@@ -184,164 +184,216 @@ template <Velocity kVelocity, class V, class T, class X, class Force>
   }
 }
 
-/// Force and torque of one contact. Remembered numbers are updated, and set to 0 where the bodies do not
-/// touch.
-/// \param c constants, Layout<Laws>::kCount
-/// \param locate with Velocity::full_step: the instants of entry and exit are located within their step and
-/// the impulse is counted from there, which makes every collision second order. Otherwise the force acts from
-/// the first step that finds an overlap to the last
-/// \param memory kRemembered numbers
-template <class Laws, Velocity kVelocity, class V, int D>
-[[gnu::always_inline]] inline ContactLoad<V, D> act(const ContactKinematics<V, D>& a, const V* c, V dt,
-                                                    [[maybe_unused]] bool locate, V* memory) {
-  using Normal = typename Laws::Normal;
-  using Tangential = typename Laws::Tangential;
-  using Rolling = typename Laws::Rolling;
-  constexpr bool kFull = kVelocity == Velocity::full_step;
-  constexpr bool kLimited = Tangential::kActs || Rolling::kActs;
-  constexpr int K = kTurns<D>;
-  const V zero(0.0), half(0.5);
-  const V* c_n = c + Layout<Laws>::kNormal;
-  V own[Normal::kMemory + 1];  // remembered by the normal law
-  for (int k = 0; k < Normal::kMemory; ++k) own[k] = memory[k];
+/// Where in the step two bodies touch, and what the normal law is evaluated with.
+template <class V>
+struct Touch {
+  using Mask = decltype(V() > V());
+  Mask now, was;  ///< they touch at the end of the step, at its start
+  Mask acting;    ///< the contact exerts a force in this step
+  V v_n, before;  ///< normal velocity in the middle of this step and of the previous one
+  V seen;         ///< and at the end of this step
+  V overlap;      ///< at the end of the step; at its start where the contact ends within it
+  ContactInterval<V> interval;
+};
 
-  // Contact interval: with located entry and exit, find the fraction of the step in which the contact exists.
+/// With full-step velocities and `locate`, finds the fraction of the step in which the contact exists.
+/// \param before normal velocity in the middle of the previous step, 0 where there was no contact
+template <Velocity kVelocity, class V, int D>
+[[gnu::always_inline]] inline Touch<V> touch(const ContactKinematics<V, D>& a, V dt,
+                                             [[maybe_unused]] bool locate, [[maybe_unused]] V before) {
+  const V zero(0.0), half(0.5);
   V v_n = a.v[D - 1] * a.n[D - 1];
   for (int k = D - 2; k >= 0; --k) v_n = fma(a.v[k], a.n[k], v_n);
 
   const auto now = a.overlap > zero;
-  auto acting = now, was = now;
-  V overlap = a.overlap, seen = v_n;
-  ContactInterval<V> interval{now, now, V(1.0), V(0.0)};
-  V* middle = memory + Laws::template kMemory<D>;
-  if constexpr (kFull) {
+  Touch<V> t{now, now, now, v_n, before, v_n, a.overlap, {now, now, V(1.0), V(0.0)}};
+  if constexpr (kVelocity == Velocity::full_step) {
     // A pair whose previous v_n was exactly 0 is treated as new; its force is the same.
-    const V before = middle[0];
-    was = abs(before) > zero;
-    seen = at_end(was, half, v_n, before);
-    interval.entering = both(now, before == zero);
-    interval.leaving = both(was, a.overlap <= zero);
-    const auto passes = either(interval.entering, interval.leaving);
-    interval.any = locate && any(passes);
-    if (interval.any) {
-      acting = either(now, was);
-      overlap = select(interval.leaving, max(fma(v_n, dt, a.overlap), zero), a.overlap);
-      interval.fraction = select(passes, min(overlap / max(abs(v_n) * dt, V(kTiny)), V(1.0)), V(1.0));
+    t.was = abs(before) > zero;
+    t.seen = at_end(t.was, half, v_n, before);
+    t.interval.entering = both(now, before == zero);
+    t.interval.leaving = both(t.was, a.overlap <= zero);
+    const auto passes = either(t.interval.entering, t.interval.leaving);
+    t.interval.any = locate && any(passes);
+    if (t.interval.any) {
+      t.acting = either(now, t.was);
+      t.overlap = select(t.interval.leaving, max(fma(v_n, dt, a.overlap), zero), a.overlap);
+      t.interval.fraction = select(passes, min(t.overlap / max(abs(v_n) * dt, V(kTiny)), V(1.0)), V(1.0));
     }
   }
+  return t;
+}
 
-  // Normal force: with full-step velocities, corrected for the change of the force within the step.
-  V f_n = Normal::force(c_n, overlap, seen, own);
-  interval.overlap_ended = overlap;
+/// Normal force over the step, > 0 if it pushes; with full-step velocities corrected for its change within
+/// the step. Completes the interval with the forces and overlaps at its ends.
+/// \param own numbers that the normal law remembers
+template <class Laws, Velocity kVelocity, class V, int D>
+[[gnu::always_inline]] inline V normal_force(const ContactKinematics<V, D>& a, const V* c, V dt,
+                                             [[maybe_unused]] bool locate, Touch<V>& t, V* own) {
+  using Normal = typename Laws::Normal;
+  using Tangential = typename Laws::Tangential;
+  const V* c_n = c + Layout<Laws>::kNormal;
+  ContactInterval<V>& interval = t.interval;
+  V f_n = Normal::force(c_n, t.overlap, t.seen, own);
+  interval.overlap_ended = t.overlap;
   interval.ended = f_n;  // the Coulomb limit uses the instantaneous force, not its mean over a step
-  if constexpr (kFull) {
+  if constexpr (kVelocity == Velocity::full_step) {
+    const V zero(0.0), half(0.5);
     // `seen` is based on the acceleration at the previous position. The change of this contact's force since
     // then is known and corrects the velocity.
-    const V gain = f_n - Normal::force(c_n, fma(seen, dt, overlap), seen, own);
-    const V corrected = fma(half * dt * c[constant::kInvMass], select(was, gain, zero), seen);
-    const V held = Normal::force(c_n, overlap, corrected, own);
+    const V gain = f_n - Normal::force(c_n, fma(t.seen, dt, t.overlap), t.seen, own);
+    const V corrected = fma(half * dt * c[constant::kInvMass], select(t.was, gain, zero), t.seen);
+    const V held = Normal::force(c_n, t.overlap, corrected, own);
     if (interval.any) {
-      const V edge = Normal::force(c_n, zero, seen, own);
+      const V edge = Normal::force(c_n, zero, t.seen, own);
       const V first = select(interval.leaving, f_n, edge), last = select(interval.leaving, edge, f_n);
       interval.begun = first;
       if constexpr (ReadsOverlap<Tangential>) {
-        interval.overlap_begun = select(interval.leaving, overlap, zero);
-        interval.overlap_ended = select(interval.leaving, zero, overlap);
+        interval.overlap_begun = select(interval.leaving, t.overlap, zero);
+        interval.overlap_ended = select(interval.leaving, zero, t.overlap);
       }
       interval.ended = select(interval.entering, f_n, select(interval.leaving, edge, held));
       f_n = over_jump(interval, first + last, first, last, held);
     } else {
       interval.ended = f_n = held;
     }
-    if constexpr (kLimited) {
+    if constexpr (Tangential::kActs || Laws::Rolling::kActs) {
       // Zero of F_n: near its end a contact pulls, so find the fraction of the interval with F_n > 0.
-      const auto pulls = both(acting, interval.ended < zero);
+      const auto pulls = both(t.acting, interval.ended < zero);
       if (locate && any(pulls)) {
-        const V start = half * (v_n + middle[0]);
-        const V held_before = Normal::force(c_n, fma(v_n, dt, a.overlap), start, own);
+        const V start = half * (t.v_n + t.before);
+        const V held_before = Normal::force(c_n, fma(t.v_n, dt, a.overlap), start, own);
         // Change only the lanes in which F_n vanishes: a contact's force must not depend on the other
         // contacts of its packet.
-        const auto vanishes = both(both(pulls, was), held_before > zero);
+        const auto vanishes = both(both(pulls, t.was), held_before > zero);
         interval.begun = select(vanishes, held_before, interval.begun);
         if constexpr (ReadsOverlap<Tangential>)
           interval.overlap_begun =
-              select(vanishes, max(fma(v_n, dt, a.overlap), zero), interval.overlap_begun);
+              select(vanishes, max(fma(t.v_n, dt, a.overlap), zero), interval.overlap_begun);
         interval.pressed =
             select(vanishes, interval.begun / max(interval.begun - interval.ended, V(kTiny)), V(1.0));
         interval.any = true;
       }
     }
   }
+  return f_n;
+}
 
+/// The tangential or rolling velocity at the end of the step, from its value `now` in the middle of this step
+/// and the one that the contact remembers, which is replaced.
+template <class V, int D>
+[[gnu::always_inline]] inline Tangent<V, kTurns<D>> remembered_at_end(const V* n, const Touch<V>& t, V half,
+                                                                      const Tangent<V, kTurns<D>>& now,
+                                                                      V* middle) {
+  constexpr int K = kTurns<D>;
+  Tangent<V, K> before;
+  for (int k = 0; k < K; ++k) before.c[k] = middle[k];
+  flatten<V, D>(n, before);
+  for (int k = 0; k < K; ++k) middle[k] = select(t.now, now.c[k], V(0.0));
+  return at_end(t.was, half, now, before);
+}
+
+/// Adds friction: rotates its spring into the present tangent plane, applies the law, adds force and torque.
+/// \param kept the law's memory \param middle tangential velocity in the middle of the previous step; both
+/// are updated
+template <class Laws, Velocity kVelocity, class V, int D>
+[[gnu::always_inline]] inline void add_friction(const ContactKinematics<V, D>& a, const V* c, V dt,
+                                                const Touch<V>& t, V* kept, [[maybe_unused]] V* middle,
+                                                ContactLoad<V, D>& out) {
+  using Tangential = typename Laws::Tangential;
+  constexpr int K = kTurns<D>;
+  const V zero(0.0), half(0.5);
+  Tangent<V, K> xi{};
+  if constexpr (Tangential::kHistory) {
+    for (int k = 0; k < K; ++k) xi.c[k] = kept[k];
+    into_tangent_plane<V, D>(a.n, xi);
+  }
+  const Tangent<V, K> v_t = tangential_velocity(a, t.v_n);
+  Tangent<V, K> seen = v_t;
+  if constexpr (kVelocity == Velocity::full_step) seen = remembered_at_end<V, D>(a.n, t, half, v_t, middle);
+  const Tangent<V, K> f_t =
+      lasting<kVelocity>(v_t, seen, dt, t.interval, xi, [&](const auto& v, V limit, V step, auto& x, V at) {
+        return tangential_force<Tangential>(c + Layout<Laws>::kTangential, v, limit, step, x, at);
+      });
+  if constexpr (Tangential::kHistory)
+    for (int k = 0; k < K; ++k) kept[k] = select(t.now, xi.c[k], zero);
+  if constexpr (D == 2) {
+    out.f[0] = nfma(f_t.c[0], a.n[1], out.f[0]);
+    out.f[1] = fma(f_t.c[0], a.n[0], out.f[1]);
+    out.q[0] = f_t.c[0];
+  } else {
+    for (int k = 0; k < 3; ++k) {
+      out.f[k] = out.f[k] + f_t.c[k];
+      const int l = (k + 1) % 3, m = (k + 2) % 3;
+      out.q[k] = nfma(a.n[m], f_t.c[l], a.n[l] * f_t.c[m]);
+    }
+  }
+}
+
+/// Adds rolling resistance to the relative angular velocity in the tangent plane. Its component along n is
+/// twisting, which no law resists. \param kept, middle as in `add_friction`
+template <class Laws, Velocity kVelocity, class V, int D>
+[[gnu::always_inline]] inline void add_rolling(const ContactKinematics<V, D>& a, const V* c, V dt,
+                                               const Touch<V>& t, V* kept, [[maybe_unused]] V* middle,
+                                               ContactLoad<V, D>& out) {
+  constexpr int K = kTurns<D>;
+  const V zero(0.0), half(0.5);
+  Tangent<V, K> theta, w;
+  for (int k = 0; k < K; ++k) {
+    theta.c[k] = kept[k];
+    w.c[k] = a.w[k];
+  }
+  into_tangent_plane<V, D>(a.n, theta);
+  flatten<V, D>(a.n, w);
+  Tangent<V, K> seen = w;
+  if constexpr (kVelocity == Velocity::full_step) seen = remembered_at_end<V, D>(a.n, t, half, w, middle);
+  const Tangent<V, K> m = lasting<kVelocity>(
+      w, seen, dt, t.interval, theta, [&](const auto& v, V limit, V step, auto& x, V /*overlap*/) {
+        return Laws::Rolling::torque(c + Layout<Laws>::kRolling, v, limit, step, x);
+      });
+  for (int k = 0; k < K; ++k) {
+    kept[k] = select(t.now, theta.c[k], zero);
+    // The sign follows the definition of q: I dw/dt = -R q.
+    out.q_i[k] = select(t.acting, -(m.c[k] * c[constant::kInvRadiusI]), zero);
+    out.q_j[k] = select(t.acting, m.c[k] * c[constant::kInvRadiusJ], zero);
+  }
+}
+
+/// Force and torque of one contact. Remembered numbers are updated, and set to 0 where the bodies do not
+/// touch.
+/// \param c constants, Layout<Laws>::kCount
+/// \param locate with Velocity::full_step: the instants of entry and exit are located within their step and
+/// the impulse is counted from there, which makes every collision second order. Otherwise the force acts from
+/// the first step that finds an overlap to the last
+/// \param memory kRemembered numbers: of the laws, then the velocities in the middle of the previous step
+template <class Laws, Velocity kVelocity, class V, int D>
+[[gnu::always_inline]] inline ContactLoad<V, D> act(const ContactKinematics<V, D>& a, const V* c, V dt,
+                                                    bool locate, V* memory) {
+  using Normal = typename Laws::Normal;
+  using Tangential = typename Laws::Tangential;
+  constexpr bool kFull = kVelocity == Velocity::full_step;
+  constexpr int K = kTurns<D>;
+  const V zero(0.0);
+  V* middle = memory + Laws::template kMemory<D>;
+  V* tangential = memory + Normal::kMemory;
+  [[maybe_unused]] V* rolling = tangential + (Tangential::kHistory ? K : 0);
+  V own[Normal::kMemory + 1];  // remembered by the normal law
+  for (int k = 0; k < Normal::kMemory; ++k) own[k] = memory[k];
+
+  auto t = touch<kVelocity>(a, dt, locate, kFull ? middle[0] : zero);
+  const V f_n = normal_force<Laws, kVelocity>(a, c, dt, locate, t, own);
   ContactLoad<V, D> out;
   for (int k = 0; k < D; ++k) out.f[k] = f_n * a.n[k];
   for (int k = 0; k < K; ++k) out.q[k] = out.q_i[k] = out.q_j[k] = zero;
-  // Friction: rotate the spring into the present tangent plane, apply the law, add its force and torque.
-  if constexpr (Tangential::kActs) {
-    Tangent<V, K> xi{};
-    V* kept = memory + Normal::kMemory;
-    if constexpr (Tangential::kHistory) {
-      for (int k = 0; k < K; ++k) xi.c[k] = kept[k];
-      into_tangent_plane<V, D>(a.n, xi);
-    }
-    const Tangent<V, K> v_t = tangential_velocity(a, v_n);
-    Tangent<V, K> seen_t = v_t;
-    if constexpr (kFull) {
-      Tangent<V, K> before;
-      for (int k = 0; k < K; ++k) before.c[k] = middle[1 + k];
-      flatten<V, D>(a.n, before);
-      seen_t = at_end(was, half, v_t, before);
-      for (int k = 0; k < K; ++k) middle[1 + k] = select(now, v_t.c[k], zero);
-    }
-    const Tangent<V, K> f_t =
-        lasting<kVelocity>(v_t, seen_t, dt, interval, xi, [&](const auto& v, V limit, V step, auto& x, V at) {
-          return tangential_force<Tangential>(c + Layout<Laws>::kTangential, v, limit, step, x, at);
-        });
-    if constexpr (Tangential::kHistory)
-      for (int k = 0; k < K; ++k) kept[k] = select(now, xi.c[k], zero);
-    if constexpr (D == 2) {
-      out.f[0] = nfma(f_t.c[0], a.n[1], out.f[0]);
-      out.f[1] = fma(f_t.c[0], a.n[0], out.f[1]);
-      out.q[0] = f_t.c[0];
-    } else {
-      for (int k = 0; k < 3; ++k) {
-        out.f[k] = out.f[k] + f_t.c[k];
-        const int l = (k + 1) % 3, m = (k + 2) % 3;
-        out.q[k] = nfma(a.n[m], f_t.c[l], a.n[l] * f_t.c[m]);
-      }
-    }
-  }
-  // Rolling resistance: apply the law to the relative angular velocity.
-  if constexpr (Rolling::kActs) {
-    Tangent<V, K> theta;
-    Tangent<V, K> w, seen_w;
-    V* kept = memory + Normal::kMemory + (Tangential::kHistory ? K : 0);
-    for (int k = 0; k < K; ++k) {
-      theta.c[k] = kept[k];
-      seen_w.c[k] = w.c[k] = a.w[k];
-    }
-    if constexpr (kFull) {
-      Tangent<V, K> before;
-      for (int k = 0; k < K; ++k) before.c[k] = middle[1 + K + k];
-      seen_w = at_end(was, half, w, before);
-      for (int k = 0; k < K; ++k) middle[1 + K + k] = select(now, w.c[k], zero);
-    }
-    const Tangent<V, K> m = lasting<kVelocity>(
-        w, seen_w, dt, interval, theta, [&](const auto& v, V limit, V step, auto& x, V /*overlap*/) {
-          return Rolling::torque(c + Layout<Laws>::kRolling, v, limit, step, x);
-        });
-    for (int k = 0; k < K; ++k) {
-      kept[k] = select(now, theta.c[k], zero);
-      // The sign follows the definition of q: I dw/dt = -R q.
-      out.q_i[k] = select(acting, -(m.c[k] * c[constant::kInvRadiusI]), zero);
-      out.q_j[k] = select(acting, m.c[k] * c[constant::kInvRadiusJ], zero);
-    }
-  }
-  // Memory and output: contacts that have ended forget their numbers and exert no force.
-  if constexpr (kFull) middle[0] = select(now, v_n, zero);
-  for (int k = 0; k < Normal::kMemory; ++k) memory[k] = select(now, own[k], zero);
-  for (int k = 0; k < D; ++k) out.f[k] = select(acting, out.f[k], zero);
-  for (int k = 0; k < K; ++k) out.q[k] = select(acting, out.q[k], zero);
+  if constexpr (Tangential::kActs) add_friction<Laws, kVelocity>(a, c, dt, t, tangential, middle + 1, out);
+  if constexpr (Laws::Rolling::kActs)
+    add_rolling<Laws, kVelocity>(a, c, dt, t, rolling, middle + 1 + (Tangential::kActs ? K : 0), out);
+
+  // Contacts that have ended forget their numbers and exert no force.
+  if constexpr (kFull) middle[0] = select(t.now, t.v_n, zero);
+  for (int k = 0; k < Normal::kMemory; ++k) memory[k] = select(t.now, own[k], zero);
+  for (int k = 0; k < D; ++k) out.f[k] = select(t.acting, out.f[k], zero);
+  for (int k = 0; k < K; ++k) out.q[k] = select(t.acting, out.q[k], zero);
   return out;
 }
 

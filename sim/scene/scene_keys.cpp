@@ -165,8 +165,8 @@ void add_contact(Rows& rows) {
        "",
        "\"none\"",
        "\"spring\"",
-       "spring: torsional spring, dashpot and limit; in 3D twisting about the normal counts as rolling, "
-       "and the spring does not turn with a pair; not with tangential = \"none\"",
+       "spring: torsional spring, dashpot and limit; twisting about the normal is not resisted; not with "
+       "tangential = \"none\"",
        {"contact.k_r=1e3", "contact.mu_r=0.1"}});
   rows.push_back({"contact.overlap_bound", "bead diameter", "0.1", "0.05",
                   "deepest overlap that does not stop the run, in diameters of the median bead"});

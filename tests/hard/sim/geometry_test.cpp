@@ -80,6 +80,26 @@ TEST(Overlaps, H5_RelaxedBeadsAreNotLaunched) {
   EXPECT_LT(moved, 10);
 }
 
+TEST(Sizes, KeysThatATableMakesVoidAreRefused) {
+  Table t;
+  const auto start = [&](const std::string& csv, const std::vector<std::string>& set) {
+    const Scene scene = t.scene(csv, set);
+    return [scene] { (void)make_start(scene); };
+  };
+  const std::string masses = "x,z,mass\n5,1,2\n7,1,3\n",
+                    both = "x,z,radius,mass\n5,1,0.4,2\n7,1,0.5,2\n8.1,1,0.4,2\n";
+  expect_refusal<ConfigError>(start(masses, {"beads.mass=4"}), "4 has no effect: ");
+  expect_refusal<ConfigError>(start(masses, {"beads.mass=4"}),
+                              "contains the masses of its beads, and 2 of 2 differ; remove the key");
+  expect_refusal<ConfigError>(start(both, {"beads.radius=0.6"}),
+                              "contains the radii of its beads, and 3 of 3 differ");
+  EXPECT_NO_THROW(start(both, {})());
+  EXPECT_NO_THROW(start("x,z,mass\n5,1,4\n7,1,4\n", {"beads.mass=4"})());
+  // Without a column of masses, radius and mass of a bead state the material.
+  const Scene material = t.scene("x,z,radius\n5,1,0.4\n7,1,0.5\n", {"beads.radius=0.8", "beads.mass=4"});
+  EXPECT_DOUBLE_EQ(make_start(material).beads[0].mass, 1);
+}
+
 /// A hundred small discs, and one that is a hundred times larger and 1e6 times heavier and falls on them.
 System unlike(SolverKind kind, std::string* said = nullptr) {
   std::string csv = "x,z,vz,radius,mass\n6,5.27,-1,5,1e4\n";
