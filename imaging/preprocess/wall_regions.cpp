@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/median.hpp"
 #include "imaging/preprocess/straight_bars.hpp"
 
 namespace twincell::imaging {
@@ -39,24 +40,23 @@ void include_edge(cv::Mat1b& regions) {
 // opening is a few pixels too large or too small, but only within the dark region. The frame is continued
 // beyond its border, so that a thin strip of plate at the bottom of a frame counts as thick. Empty if there
 // is no such region.
-cv::Mat1b regions_darker_than(float limit, const cv::Mat1f& darkness, double disc_radius_px) {
+cv::Mat1b regions_of(const cv::Mat1b& dark_pixels, double disc_radius_px) {
   constexpr double kCoarse = 6;  // radius of the disc in the coarse picture, px
   const int shrink = std::max(1, static_cast<int>(disc_radius_px / kCoarse));
-  const cv::Size size((darkness.cols + shrink - 1) / shrink, (darkness.rows + shrink - 1) / shrink);
+  const cv::Size size((dark_pixels.cols + shrink - 1) / shrink, (dark_pixels.rows + shrink - 1) / shrink);
   const double reach = disc_radius_px / shrink;
   // Coarse picture: a block is dark only if all of its pixels are, because the gaps between beads are narrow.
-  const cv::Mat1b dark_pixels = darkness > limit;
   cv::Mat1b dark = dark_pixels;
   if (shrink > 1) {
     dark = cv::Mat1b(size, uchar{255});
     // Local copies: otherwise the compiler assumes that the stores change these numbers and does not
     // vectorise.
-    const int columns = darkness.cols, blocks = size.width;
+    const int columns = dark_pixels.cols, blocks = size.width;
     std::vector<uchar> dark_down(static_cast<std::size_t>(blocks * shrink));
     for (int block = 0; block < size.height; ++block) {
       std::fill(dark_down.begin(), dark_down.end(), uchar{255});
       uchar *all = dark_down.data(), *to = dark[block];
-      for (int y = block * shrink; y < std::min(darkness.rows, (block + 1) * shrink); ++y) {
+      for (int y = block * shrink; y < std::min(dark_pixels.rows, (block + 1) * shrink); ++y) {
         const uchar* pixel = dark_pixels[y];
         for (int x = 0; x < columns; ++x) all[x] &= pixel[x];
       }
@@ -99,12 +99,35 @@ cv::Mat1b regions_darker_than(float limit, const cv::Mat1f& darkness, double dis
   const auto at_full_size = [&](const cv::Mat1b& blocks) {
     cv::Mat1b full;
     cv::resize(blocks, full, cv::Size(), shrink, shrink, cv::INTER_NEAREST);
-    return cv::Mat1b(full(cv::Rect(0, 0, darkness.cols, darkness.rows)));
+    return cv::Mat1b(full(cv::Rect(0, 0, dark_pixels.cols, dark_pixels.rows)));
   };
   cv::Mat1b regions = at_full_size(distance < reach + (shrink > 1 ? 1 : 0)) & dark_pixels;
   trim_bumps(regions, at_full_size(distance < 0.5 * reach), disc_radius_px);
   include_edge(regions);
   return regions;
+}
+
+/// Pixels darker than a limit. Where the noise makes single pixels of a dark region lighter than that, they
+/// count too: the mean of the nine pixels about such a pixel is above the limit, and the pixel is as dark as
+/// the noise allows. A gap between beads is lighter, or lightens the mean.
+cv::Mat1b pixels_darker_than(float limit, const cv::Mat1f& darkness) {
+  constexpr double kErrors = 6, kSamples = 20000;
+  cv::Mat1b dark = darkness > limit;
+  std::vector<float> levels;
+  const int stride =
+      std::max(1, static_cast<int>(std::sqrt(static_cast<double>(darkness.total()) / kSamples)));
+  for (int y = stride / 2; y < darkness.rows; y += stride)
+    for (int x = stride / 2; x < darkness.cols; x += stride)
+      if (darkness(y, x) > limit) levels.push_back(darkness(y, x));
+  if (levels.empty()) return dark;
+  const auto least = static_cast<float>(static_cast<double>(upper_median(std::move(levels))) -
+                                        kErrors * std::sqrt(noise_of(darkness).dark));
+  if (least >= limit) return dark;
+  cv::Mat1f mean;
+  cv::boxFilter(darkness, mean, CV_32F, {3, 3}, cv::Point(-1, -1), true,
+                cv::BORDER_REFLECT_101 | cv::BORDER_ISOLATED);
+  dark |= (mean > limit) & (darkness > least);
+  return dark;
 }
 
 /// The darkness above which thick regions are walls: 0.75, or 0.75 of the darkest level if nothing is as dark
@@ -191,7 +214,7 @@ cv::Mat1b regions_near_darkest(const cv::Mat1f& smooth, const cv::Mat1b& among, 
   const auto at =
       levels.begin() + static_cast<std::ptrdiff_t>(kNearlyAll * static_cast<double>(levels.size()));
   std::nth_element(levels.begin(), at, levels.end());
-  return regions_darker_than(share * *at, smooth, disc_radius_px);
+  return regions_of(smooth > share * *at, disc_radius_px);
 }
 
 /// Removes the regions that do not touch the border of the picture.
@@ -264,7 +287,8 @@ cv::Mat1b wall_regions(const Prepared& image, bool bright, double radius_px, dou
   constexpr double kTail = 2, kFromDark = 0.7, kFromDarkest = 1.55;
   const auto uneven = bright ? unevenly_lit_regions(image, radius_px, in_radii) : std::nullopt;
   cv::Mat1b regions =
-      uneven ? *uneven : regions_darker_than(least_wall_darkness(darkness), darkness, in_radii * radius_px);
+      uneven ? *uneven
+             : regions_of(pixels_darker_than(least_wall_darkness(darkness), darkness), in_radii * radius_px);
   cv::Mat1b bars = straight_bars(darkness, 2 * radius_px, 2 * in_radii * radius_px);
   if (regions.empty() && bars.empty()) return {};
   const double blur = blur_of(darkness);

@@ -41,5 +41,29 @@ TEST(GreyWalls, AreWallsAndBeadsOfTheirDarknessAreNot) {
   }
 }
 
+// Single pixels of a noisy wall are lighter than its threshold; the wall is whole nevertheless, and no bead
+// is part of it.
+TEST(GreyWalls, NoisyWallsAreWhole) {
+  cv::RNG random(7);
+  for (const double darkness : {0.78, 0.8, 0.85})
+    for (const double noise : {2.0, 3.0, 4.0}) {  // of 200 levels
+      cv::Mat1b levels;
+      cv::Mat1f grey = cell(darkness);
+      cv::Mat1f error(grey.size());
+      random.fill(error, cv::RNG::NORMAL, 0, noise);
+      cv::Mat1f(grey + error).convertTo(levels, CV_8U);
+      const cv::Mat1b walls = prepare(levels, {}, kDiameter / 2.0).opaque;
+      ASSERT_FALSE(walls.empty()) << darkness << " " << noise;
+      constexpr int kEdge = 2;  // px, whose place is uncertain
+      for (const cv::Rect part :
+           {cv::Rect(0, 0, kWall - kEdge, kHigh), cv::Rect(kWide - kWall + kEdge, 0, kWall - kEdge, kHigh),
+            cv::Rect(0, kHigh - kWall + kEdge, kWide, kWall - kEdge)})
+        EXPECT_EQ(cv::countNonZero(walls(part)), part.area()) << darkness << " " << noise;
+      for (int row = 0; row < 2; ++row)
+        for (int x = kWall + kDiameter / 2; x < kWide - kWall; x += kDiameter)
+          EXPECT_EQ(walls(kHigh - kWall - kDiameter / 2 - row * kDiameter, x), 0) << darkness << " " << noise;
+    }
+}
+
 }  // namespace
 }  // namespace twincell::imaging
