@@ -306,7 +306,8 @@ void add_calibrate_camera(CLI::App& calibrate, Common& common) {
   verb.add_option("--target-kind", o->kind, "Pattern of --target: chessboard (default) or dots")
       ->check(CLI::IsMember({"chessboard", "dots"}));
   verb.add_option("--target-grid", o->grid, "Number of inner corners, or dots, of --target along x and y")
-      ->expected(2);
+      ->expected(2)
+      ->delimiter(',');
   verb.add_option("--target-spacing", o->spacing, "Distance between neighbouring points of --target, sigma")
       ->check(above_zero());
   verb.add_option("--focal-px", o->focal_px,

@@ -492,6 +492,7 @@ void add_calibrate_infer(CLI::App& contacts, Common& common) {
                "Prints each with its 95 % interval; -o also writes them to a calibration file.",
                "twincell calibrate contacts infer exp.h5 --scene scene.toml --vary "
                "contact.restitution=0.7:0.95 --observables s_k,flight_time --runs 12");
+  takes_seed(kind, common);
   kind.add_option("measured", o->measured, "Trajectory of the experiment (H5MD); optional with --onset");
   kind.add_option("--scene", o->scene, "Scene file of the same cell (TOML)")->required();
   kind.add_option("--vary", o->vary, "Parameter to infer and its range, as section.key=low:high; up to three")

@@ -78,6 +78,7 @@ void add_compare(CLI::App& program, Common& common) {
       "Prints the comparison and writes a report.",
       "twincell compare --experiment twin/experiment.h5 --simulation twin/simulation-1.h5 "
       "twin/simulation-2.h5 -o report");
+  takes_seed(verb, common);
   has_details(verb, "all compared numbers, with the parts of their errors and the causes");
   auto o = std::make_shared<CompareOptions>();
   verb.add_option("--experiment", o->experiments, "Trajectories of the experiments (H5MD)");

@@ -5,11 +5,13 @@
 
 #include "analysis/observable/observable.hpp"
 #include "analysis/report/report.hpp"
+#include "cli/output.hpp"
 #include "core/error.hpp"
 
 namespace twincell::cli {
 
 void add_comparing_flags(CLI::App& verb, ComparingFlags& flags) {
+  const OptionHeading heading(verb, "Analysis and comparison");
   verb.add_option("--discard", flags.discard_cycles,
                   "Number of cycles skipped at the start of each trajectory")
       ->capture_default_str();

@@ -136,7 +136,8 @@ void add_draw(CLI::App& program, Common& common) {
   verb.add_option("--colour-range", o->range,
                   "Numbers at the two ends of the colour map; default: the smallest and the largest of the "
                   "drawn frames")
-      ->expected(2);
+      ->expected(2)
+      ->delimiter(',');
   verb.add_option("--tracks", o->job.tracks,
                   "Number of frames before the drawn one over which the path of each bead is drawn")
       ->check(CLI::Range(1, 100000));

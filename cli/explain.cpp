@@ -109,6 +109,7 @@ void add_explain(CLI::App& program, Common& common) {
                             "reasons; time step, memory and expected time. Runs the scene for at most a few "
                             "seconds to measure its speed, and writes no file.",
                             "twincell explain scene.toml --set contact.mu=0.0");
+  takes_seed(verb, common);
   verb.add_option("scene", o->scene, "Scene file (TOML, docs/scene.md)")->required();
   verb.add_option("--set", o->assignments,
                   "Set a key of the scene, as section.key=value; overrides the file; may be repeated")

@@ -37,6 +37,8 @@ struct ExportOptions {
 };
 
 void export_scene(const ExportOptions& o, const Common& common) {
+  if (o.units != "sigma")
+    throw ConfigError({"", 0, 0, "--units"}, "applies to a trajectory; a deck is in the units of the scene.");
   std::vector<std::string> assignments = with_seed(o.assignments, common);
   sim::Scene scene = sim::read_scene(o.input, assignments);
   protect_named_inputs(common, scene.named_files());
@@ -77,8 +79,27 @@ BeadNumbers bond_orders(const TrajectoryInfo& info) {
           }};
 }
 
+/// A trajectory that notes whether beads are missing in the frames that are read.
+class WatchedSource : public TrajectorySource {
+ public:
+  explicit WatchedSource(const TrajectorySource& of) : of_(of) {}
+  [[nodiscard]] const TrajectoryInfo& info() const override { return of_.info(); }
+  [[nodiscard]] std::size_t n_frames() const override { return of_.n_frames(); }
+  [[nodiscard]] std::string name() const override { return of_.name(); }
+  void read(std::size_t index, Frame& frame) const override {
+    of_.read(index, frame);
+    has_gaps_ = has_gaps_ || frame.n_present() < frame.position.size();
+  }
+  [[nodiscard]] bool has_gaps() const { return has_gaps_; }
+
+ private:
+  const TrajectorySource& of_;
+  mutable bool has_gaps_ = false;
+};
+
 void export_beads(const ExportOptions& o, const Common& common) {
   const auto refuse = [](const char* option, const char* why) { throw ConfigError({"", 0, 0, option}, why); };
+  if (common.seed) refuse("--seed", "applies to a scene; the input is a trajectory.");
   if (!o.assignments.empty()) refuse("--set", "applies to a scene; the input is a trajectory.");
   if (!o.from.empty()) refuse("--from", "applies to a scene; the input is a trajectory.");
   const ForeignFormat& format = foreign_format(o.format, "--to");
@@ -94,12 +115,18 @@ void export_beads(const ExportOptions& o, const Common& common) {
   const H5mdReader trajectory(o.input);
   const ExportUnits units = o.units == "mm" ? ExportUnits::laboratory(trajectory.info(), "--units")
                                             : ExportUnits::reduced(trajectory.info());
+  const WatchedSource source(trajectory);
   AtomicPath written(o.output, product);
   ProgressBar progress(common, "writing");
-  const std::size_t frames =
-      export_trajectory(trajectory, format, units, written.part(), output.stem().string(), progress,
-                        bond_orders(trajectory.info()));
+  const std::size_t frames = export_trajectory(source, format, units, written.part(), output.stem().string(),
+                                               progress, bond_orders(trajectory.info()));
   written.commit();
+  if (source.has_gaps() &&
+      (format.word == std::string_view("xyz") || format.word == std::string_view("lammps-dump")))
+    note(common,
+         "beads are missing in some frames; MDAnalysis needs the same number in all (OVITO reads the file; "
+         "gsd and csv "
+         "are other ways).");
   print_result(
       common,
       {{"output", o.output},
@@ -141,6 +168,7 @@ void add_export(CLI::App& program, Common& common) {
                             "Export a trajectory in the format of another program, or a scene as a LAMMPS "
                             "deck, with the commands that run it and import its result.",
                             "twincell export sim.h5 --to xyz -o sim.xyz");
+  takes_seed(verb, common);
   verb.add_option("input", o->input, "Trajectory (H5MD) or scene file (TOML, docs/scene.md)")->required();
   std::string formats;
   std::vector<std::string> words = {kDeck};

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -27,8 +30,24 @@ struct ImportOptions {
   std::string file, output, format;
   std::vector<double> origin;
   std::vector<std::string> columns;
+  const CLI::Option* sigma = nullptr;  ///< of `foreign`
   ForeignOptions foreign;
 };
+
+/// Refuses a file in millimetres, for example, without the diameter of a bead in that unit.
+void require_sigma(const ImportOptions& o, const ForeignTrajectory& source) {
+  const std::string unit = source.length_unit();
+  std::string word = unit;
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  constexpr std::array<std::string_view, 7> kOfNoScale = {"", "sigma", "d", "lj", "pixel", "pixels", "px"};
+  if (o.sigma->count() > 0 || std::find(kOfNoScale.begin(), kOfNoScale.end(), word) != kOfNoScale.end())
+    return;
+  throw ConfigError(
+      {o.file, 0, 0, "--sigma"},
+      fmt::format("is missing: the lengths of the file are in {0}, so the bead diameter in {0} is needed.",
+                  unit.substr(0, 40)));
+}
 
 /// Says which numbers the beads have now; empty if they keep those of the file.
 std::string new_numbers(const std::vector<std::int64_t>& ids) {
@@ -45,7 +64,13 @@ void note_doubts(const Common& common, const ForeignTrajectory& source, double s
     note(common, fmt::format("the nearest neighbours in the first frame are {:.3g} bead diameters apart; the "
                              "bead diameter is {:g} in the unit of the file (--sigma).",
                              d, sigma));
-  constexpr double kOverlap = 0.7;
+  constexpr double kOverlap = 0.7, kOtherSize = 1.5;
+  if (const std::vector<double>& radii = source.info().radius; !radii.empty())
+    if (const double wide = 2 * upper_median(radii); wide > kOtherSize || wide < 1 / kOtherSize)
+      note(common,
+           fmt::format("by their radii the beads are {:.3g} wide in the unit of the file, but sigma is {:g} "
+                       "(--sigma).",
+                       wide * sigma, sigma));
   if (const std::vector<double>& radii = source.info().radius; !radii.empty())
     if (const double wide = 2 * upper_median(radii); source.spacing() < kOverlap * wide)
       note(common,
@@ -82,6 +107,7 @@ void run(ImportOptions& o, const Common& common) {
                       "applies to tables (--format csv).");
   ProgressBar reading(common, "reading");
   const ForeignTrajectory source(o.file, format, o.foreign, reading);
+  require_sigma(o, source);
   TrajectoryInfo info = source.info();
   Provenance provenance = common.provenance();
   provenance.inputs.emplace_back(o.file);
@@ -163,13 +189,18 @@ void add_import(CLI::App& program, Common& common) {
   verb.add_option("--timestep", l.timestep,
                   "Length of a step, in the time unit of the file; required unless the file contains times. "
                   "All lengths and times below are in the units of the file.");
-  verb.add_option("--sigma", l.sigma, "Bead diameter, the unit of length of the trajectory")
-      ->capture_default_str();
+  o->sigma =
+      verb.add_option(
+              "--sigma", l.sigma,
+              "Bead diameter in the unit of the file, the unit of length of the trajectory; required if "
+              "the file states a unit such as mm")
+          ->capture_default_str();
   verb.add_option("--gravity", l.gravity, "Acceleration of gravity g")->capture_default_str();
   verb.add_option("--cell-origin", o->origin,
                   "Lower left inside corner of the cell, with the plate at its mean height: x y [z]; "
                   "default: 0, along a period its beginning")
-      ->expected(2, 3);
+      ->expected(2, 3)
+      ->delimiter(',');
   verb.add_option("--cell-width", l.width,
                   "Distance of the side walls; default: up to the end of the box of the file");
   verb.add_option("--drive-amplitude", l.drive.amplitude,

@@ -14,6 +14,7 @@
 namespace twincell::cli {
 
 void add_locating_options(CLI::App& verb, imaging::LocatingRequest& request) {
+  const OptionHeading heading(verb, "Locating the beads");
   verb.add_option(
           "--diameter", request.diameters,
           "Bead diameter, px, or up to 8 different diameters; default: the scale in CELL.toml if there "

@@ -217,6 +217,7 @@ void add_match(CLI::App& program, Common& common) {
       "a folder.",
       "twincell match frames/ CELL.toml -o twin/\n"
       "  twincell match gamma-0.9/ gamma-1.6/ -o twins/");
+  takes_seed(verb, common);
   has_details(verb, "all compared numbers, with the parts of their errors and the causes");
   auto o = std::make_shared<MatchOptions>();
   verb.add_option(

@@ -136,6 +136,7 @@ void add_measure(CLI::App& program, Common& common) {
                             "precision that [until] requests. Prints the results; no frames are stored.",
                             "twincell measure gas.toml --only T_z,delta_h_cm --set until.quantity=T_z "
                             "--set until.relative_error=0.02 --set time.cycles=20000");
+  takes_seed(verb, common);
   has_details(verb, "all results, lists and absent ones included, and how each is computed");
   verb.add_option("scene", options->scene, "Scene file (TOML, docs/scene.md)")->required();
   writes(common, verb,

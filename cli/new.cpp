@@ -204,6 +204,11 @@ void run(const Common& common, NewOptions& o) {
     cells.push_back(write_one(common, o, o.stacks[i], cell, i == 0, said));
     open += cells.back()["open"].size();
   }
+  // A period that is no whole number of frames has phases of its own in every stack, which the plate shows.
+  const bool whole_periods = std::none_of(cells.begin(), cells.end(), [](const nlohmann::json& cell) {
+    return std::any_of(cell["not_measured"].begin(), cell["not_measured"].end(),
+                       [](const nlohmann::json& m) { return m["what"] == twin::kFramesPerCycle; });
+  });
   note_different_scales(common, cells);
   if (open > 0)
     said += fmt::format("{} value{} still needed: look for \"FILL IN\" in the file{}.\n", open,
@@ -212,7 +217,7 @@ void run(const Common& common, NewOptions& o) {
     said +=
         "next: twincell match " +
         (several ? "STACKS... " + shell_word(output) : shell_word(o.stacks[0]) + " " + shell_word(output)) +
-        " -o twin/\n";
+        (whole_periods ? "" : " --phase-lock found") + " -o twin/\n";
   nlohmann::json document = {{"cells", cells},
                              {"provenance", nlohmann::json::parse(common.provenance().to_json())}};
   print_result(common, document, said);

@@ -170,14 +170,27 @@ CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, c
                   "Number of threads; 0 (default): automatic, at most one per core")
       ->check(CLI::Range(0, 4096))
       ->envname("TWINCELL_THREADS");
-  verb.add_option("--seed", common.seed,
-                  "Seed of the random numbers, a whole number of at least 0 (for a scene or a sweep at most "
-                  "2^53); default: the seed in the input file, otherwise 1");
   verb.add_flag(
       "--force", common.force,
       "Replace an existing output file even if it is of another kind; inputs and folders are never replaced");
   verb.parse_complete_callback([&verb, &common] { guard_outputs(verb, common); });
   return verb;
+}
+
+void takes_seed(CLI::App& verb, Common& common) {
+  verb.add_option("--seed", common.seed,
+                  "Seed of the random numbers, a whole number of at least 0 (for a scene or a sweep at most "
+                  "2^53); default: the seed in the input file, otherwise 1");
+}
+
+OptionHeading::OptionHeading(CLI::App& verb, std::string heading)
+    : verb_(verb), heading_(std::move(heading)), before_(verb.get_options().size()) {}
+
+OptionHeading::~OptionHeading() {
+  const std::string default_heading = "Options";  // of CLI11; an inner heading stays, and an empty one hides
+  const std::vector<CLI::Option*> all = verb_.get_options();
+  for (std::size_t k = before_; k < all.size(); ++k)
+    if (all[k]->get_group() == default_heading) all[k]->group(heading_);
 }
 
 void has_details(CLI::App& verb, const std::string& what) {

@@ -55,6 +55,23 @@ std::vector<std::string> with_seed(std::vector<std::string> assignments, const C
 CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, const std::string& summary,
                    const std::string& example);
 
+/// Adds --seed to a verb that draws random numbers by it; no other verb has the option.
+void takes_seed(CLI::App& verb, Common& common);
+
+/// The options that are added to a verb during its lifetime stand under this heading in the help.
+class OptionHeading {
+ public:
+  OptionHeading(CLI::App& verb, std::string heading);
+  OptionHeading(const OptionHeading&) = delete;
+  OptionHeading& operator=(const OptionHeading&) = delete;
+  ~OptionHeading();
+
+ private:
+  CLI::App& verb_;
+  std::string heading_;
+  std::size_t before_;  ///< options
+};
+
 /// States what --verbose adds to the result of a verb, as a clause; a verb without this call prints all
 /// details in any case.
 void has_details(CLI::App& verb, const std::string& what);

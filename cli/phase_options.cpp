@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "cli/numbers.hpp"
+#include "cli/output.hpp"
 #include "core/choice.hpp"
 #include "core/counted.hpp"
 
@@ -26,6 +27,7 @@ std::string phase_methods_help() {
 }  // namespace
 
 void add_phase_options(CLI::App& verb, imaging::PhaseRequest& request) {
+  const OptionHeading heading(verb, "Phases of the drive");
   verb.add_option("--phase-lock", request.phase_lock, "Source of the drive phases. " + phase_methods_help());
   verb.add_option(
           "--drive-hz", request.drive_hz,

@@ -83,6 +83,7 @@ void add_render(CLI::App& program, Common& common) {
                             "Render a trajectory with the synthetic camera. Writes frames with their ground "
                             "truth into a folder, or a film, or both.",
                             "twincell render sim.h5 -o filmed/ --exposure-t0 0.05 --movie film.mp4");
+  takes_seed(verb, common);
   verb.add_option("trajectory", o->trajectory, "Trajectory file (H5MD)")->required();
   writes(common, verb,
          verb.add_option("-o,--output", o->job.folder,

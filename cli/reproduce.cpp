@@ -303,6 +303,7 @@ void add_reproduce(CLI::App& program, Common& common) {
                "Reproduce a figure or table of the papers: run its simulations and compare the results with "
                "their targets. Writes runs, figure, NAME.json and NAME.txt into a folder.",
                "twincell reproduce p1-fig3 --budget 10");
+  takes_seed(verb, common);
   std::string list = "Figure or table to reproduce, one of:";
   for (const Reproducible& r : reproduce::list()) list += fmt::format("\n{}: {}", r.name, r.what);
   verb.add_option("name", options->name, list)->type_name(kWord);

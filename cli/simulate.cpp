@@ -346,6 +346,7 @@ void add_simulate(CLI::App& program, Common& common) {
                "Run a scene and write its trajectory. Prints the drive, the time step, the effects that are "
                "on or off, and the speed of the run.",
                "twincell simulate scene.toml -o sim.h5 --set drive.gamma=1.8 --set time.cycles=10");
+  takes_seed(verb, common);
   has_details(verb, "the effects that are on, off or approximated, with reasons");
   verb.add_option("scene", options->scene, "Scene file (TOML, docs/scene.md)")->required();
   writes(common, verb,

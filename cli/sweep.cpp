@@ -315,6 +315,7 @@ void add_sweep(CLI::App& program, Common& common) {
   auto options = std::make_shared<SweepOptions>();
   const auto add = [&](const char* name, const char* summary, const char* example) -> CLI::App& {
     CLI::App& sub = add_verb(verb, common, name, summary, example);
+    takes_seed(sub, common);
     sub.add_option("plan", options->plan, "Plan file (TOML, docs/sweeps.md)")->required();
     // The folder is checked against the output rules when the sweep starts (sweep/store.cpp).
     common.outputs.push_back(

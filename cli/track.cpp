@@ -278,6 +278,7 @@ void add_track(CLI::App& program, Common& common) {
   writes(common, verb,
          verb.add_option("-o,--output", o->output, "Trajectory file to write (H5MD)")->required(),
          Product::trajectory());
+  auto heading = std::make_unique<OptionHeading>(verb, "Cell and drive");
   verb.add_option("--cell", o->film.request.cell_file,
                   "CELL.toml with scale, origin, size and drive of the cell");
   verb.add_option("--pixels-per-sigma", o->film.request.pixels_per_sigma,
@@ -310,7 +311,9 @@ void add_track(CLI::App& program, Common& common) {
   verb.add_option("--drive-amplitude", o->film.request.amplitude,
                   "Amplitude A of the drive, sigma; if CELL.toml has a [scale], use --set "
                   "drive.amplitude_sigma= or drive.amplitude_mm= instead");
+  heading.reset();
   add_locating_options(verb, o->film.locating);
+  heading = std::make_unique<OptionHeading>(verb, "Linking");
   verb.add_option("--range", o->film.link.range_diameters,
                   "Largest distance of a bead from its predicted position, bead diameters, above 0, at most "
                   "10; default: 2");
@@ -322,9 +325,11 @@ void add_track(CLI::App& program, Common& common) {
   verb.add_option("--shortest", o->film.shortest,
                   "Smallest number of frames in which a track must be seen to be written; default: 1")
       ->check(above_zero());
+  heading.reset();
   writes(common, verb,
          verb.add_option("--csv", o->csv, "Table of tracks to write (CSV, trackpy's columns and more)"),
          Product::table(kHeading));
+  heading = std::make_unique<OptionHeading>(verb, "A table of located beads in place of frames");
   verb.add_option(
           "--columns", o->columns,
           "Of a table: names of columns that are called otherwise, as QUANTITY=NAME: frame, x, y, radius, "
@@ -334,7 +339,9 @@ void add_track(CLI::App& program, Common& common) {
           "--picture-size", o->picture,
           "Of a table: width and height of the frames, px; needed with rotation or distortion of the camera")
       ->expected(2)
+      ->delimiter(',')
       ->check(CLI::Range(1, 100000));
+  heading.reset();
   add_truth_options(verb, o->truth);
   add_profile_option(verb, o->profile);
   verb.callback([o, &common] { run(*o, common); });

@@ -18,10 +18,8 @@ struct TruthOptions {
   std::string file;                 ///< truth.csv, or a folder of truth_NN.csv; empty: not scored
   std::vector<double> scored_rows;  ///< first and last, px; empty: all
 
-  [[nodiscard]] imaging::ScoredRows rows() const {
-    return scored_rows.size() == 2 ? imaging::ScoredRows{scored_rows[0], scored_rows[1]}
-                                   : imaging::ScoredRows{};
-  }
+  /// \throws ConfigError for rows without a truth
+  [[nodiscard]] imaging::ScoredRows rows() const;
 };
 
 void add_truth_options(CLI::App& verb, TruthOptions& options);

@@ -19,6 +19,11 @@ extern std::atomic<int> finishing;  ///< number of live FinishFirst objects
 /// \returns whether it is the first one
 bool request_cancellation(int signal) noexcept;
 
+/// Forgets the request: for an interpreter, which goes on after it has stopped one computation.
+inline void withdraw_cancellation() noexcept {
+  stop_detail::asked_by.store(0);
+}
+
 /// Number of the first signal that requested cancellation; 0 if there was none.
 inline int cancellation_requested() noexcept {
   return stop_detail::asked_by.load(std::memory_order_relaxed);

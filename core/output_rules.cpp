@@ -13,6 +13,7 @@
 
 #include "core/error.hpp"
 #include "core/manifest.hpp"
+#include "core/picture_names.hpp"
 
 namespace twincell {
 
@@ -99,7 +100,8 @@ void require_file(const fs::path& final, const Product& product, const Where& wh
       throw ConfigError(where,
                         fmt::format("the output is an input of the same command, '{}'.", input.string()));
     if (!fs::is_directory(input, ec)) continue;
-    if (product.sign == Product::Sign::picture_software && same_file(final.parent_path(), input))
+    if ((product.sign == Product::Sign::picture_software || is_named_as_picture(final)) &&
+        same_file(final.parent_path(), input))
       throw ConfigError(where,
                         fmt::format("the folder '{}' is an input, and a picture in it would be one of its "
                                     "frames; name a file elsewhere.",

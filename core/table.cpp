@@ -58,6 +58,7 @@ Table read_table(const std::filesystem::path& path) {
   table.file = path.string();
   std::istringstream in(read_table_text(path));
   long line_number = 0;
+  std::optional<std::size_t> twin;  // of a column that pandas wrote twice
   for (std::string line; std::getline(in, line);) {
     ++line_number;
     const std::vector<std::string_view> fields = fields_of(line);
@@ -65,13 +66,15 @@ Table read_table(const std::filesystem::path& path) {
     const Where where{.file = table.file, .line = line_number, .key = {}};
     if (table.names.empty()) {
       table.names.assign(fields.begin(), fields.end());
-      check_column_names(table.names, where);
+      twin = twin_of_index(table.names);
+      check_column_names({table.names.begin() + (twin ? 1 : 0), table.names.end()}, where);
       table.columns.resize(fields.size());
       continue;
     }
     if (fields.size() != table.names.size())
       throw InputError(where, fmt::format("has {}; the header line has {}", counted(fields.size(), "field"),
                                           table.names.size()));
+    require_same_index(fields, twin, table.names.front(), where);
     for (std::size_t c = 0; c < fields.size(); ++c) {
       const auto number = number_of(fields[c]);
       if (!number) table.texts.try_emplace(c, Table::Text{line_number, std::string(fields[c].substr(0, 60))});

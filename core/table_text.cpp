@@ -65,6 +65,20 @@ std::vector<std::string_view> fields_of(std::string_view line) {
   }
 }
 
+std::optional<std::size_t> twin_of_index(const std::vector<std::string>& names) {
+  if (names.empty() || names.front().empty()) return {};
+  const auto twin = std::find(names.begin() + 1, names.end(), names.front());
+  return twin == names.end() ? std::nullopt : std::optional(static_cast<std::size_t>(twin - names.begin()));
+}
+
+void require_same_index(const std::vector<std::string_view>& fields, std::optional<std::size_t> twin,
+                        const std::string& name, const Where& where) {
+  if (!twin || fields.front() == fields[*twin]) return;
+  throw InputError({.file = where.file, .line = where.line, .key = name},
+                   fmt::format("the column occurs twice, with the values '{}' and '{}'.",
+                               fields.front().substr(0, 60), fields[*twin].substr(0, 60)));
+}
+
 void check_column_names(const std::vector<std::string>& names, const Where& where) {
   if (names.size() == 1 && names.front().find_first_of(";\t") != std::string::npos)
     throw InputError(where,

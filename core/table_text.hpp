@@ -3,6 +3,7 @@
 /// Text tables written by other programs: reads the text and checks the line of column names.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,16 @@ std::string read_table_text(const std::filesystem::path& file);
 /// double quotes may hold commas; it is returned without the quotes around it, and a doubled quote in it
 /// stays doubled (RFC 4180). A line that ends in a comma has an empty last field.
 std::vector<std::string_view> fields_of(std::string_view line);
+
+/// Column with the name of the first one. pandas writes the index of a table as the first column, and an
+/// index that is also a column has its name: such a column may occur twice, with equal values
+/// (require_same_index).
+std::optional<std::size_t> twin_of_index(const std::vector<std::string>& names);
+
+/// \param twin twin_of_index of the names \throws InputError with the line of `where` if the two fields
+/// differ
+void require_same_index(const std::vector<std::string_view>& fields, std::optional<std::size_t> twin,
+                        const std::string& name, const Where& where);
 
 /// Checks the names of columns.
 /// \throws InputError at `where` if a name occurs twice, if all names are numbers (the line of names is then

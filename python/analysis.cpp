@@ -7,6 +7,7 @@
 #include "analysis/runs/pooling.hpp"
 #include "analysis/runs/windows.hpp"
 #include "core/error.hpp"
+#include "core/json_view.hpp"
 #include "python/trajectory.hpp"
 
 namespace twincell::python {
@@ -20,6 +21,21 @@ struct Results {
   std::vector<analysis::Result> all;
   std::string provenance_json;
 };
+
+/// State for pickle: the results as results_json with their order, and the provenance.
+py::tuple pickled(const std::vector<analysis::Result>& all, const std::string& provenance) {
+  std::vector<std::string> names;
+  for (const analysis::Result& one : all) names.push_back(one.name);
+  return py::make_tuple(analysis::results_json(all), names, provenance);
+}
+Results unpickled(const py::tuple& state) {
+  const auto read =
+      analysis::results_from_json(JsonView::parse(state[0].cast<std::string>(), "the pickled results"));
+  Results results{{}, state[2].cast<std::string>()};
+  for (const auto& name : state[1].cast<std::vector<std::string>>())
+    results.all.push_back(*analysis::seek_result(read, name));
+  return results;
+}
 
 py::object value_of(const analysis::Result& r) {
   if (!r.present()) return py::none();
@@ -116,12 +132,15 @@ void bind_analysis(py::module_& module) {
       .def_readonly("source", &analysis::Result::source, header_text(kHeader, "Result::source"))
       .def_readonly("absent", &analysis::Result::absent, header_text(kHeader, "Result::absent"))
       .def_readonly("of_runs", &analysis::Result::of_runs, header_text(kHeader, "Result::of_runs"))
-      .def("__float__", [](const analysis::Result& r) {
-        if (!r.present()) throw ConfigError({.file = {}, .key = r.name}, "is absent: " + r.absent);
-        if (!r.text.empty() || !r.shape.empty())
-          throw ConfigError({.file = {}, .key = r.name}, "is not a single number.");
-        return r.value();
-      });
+      .def("__float__",
+           [](const analysis::Result& r) {
+             if (!r.present()) throw ConfigError({.file = {}, .key = r.name}, "is absent: " + r.absent);
+             if (!r.text.empty() || !r.shape.empty())
+               throw ConfigError({.file = {}, .key = r.name}, "is not a single number.");
+             return r.value();
+           })
+      .def(py::pickle([](const analysis::Result& r) { return pickled({r}, ""); },
+                      [](const py::tuple& state) { return unpickled(state).all.at(0); }));
   py::class_<Results>(module, "Results",
                       "The results of one analysis: a mapping from names to Result, in order.")
       .def("__len__", [](const Results& r) { return r.all.size(); })
@@ -161,6 +180,7 @@ void bind_analysis(py::module_& module) {
       .def_property_readonly(
           "provenance", [](const Results& r) { return from_json(r.provenance_json); },
           "What produced the results, as a dict.")
+      .def(py::pickle([](const Results& r) { return pickled(r.all, r.provenance_json); }, &unpickled))
       .def("__str__", [](const Results& r) { return analysis::results_text(r.all); })
       .def("__repr__",
            [](const Results& r) { return fmt::format("<twincell.Results: {} results>", r.all.size()); });
@@ -180,6 +200,14 @@ void bind_analysis(py::module_& module) {
         return fmt::format("<twincell.Window: cycles {} to {}>", w.window.first_cycle,
                            w.window.first_cycle + w.window.cycles - 1);
       });
+  const std::string options_text =
+      "\nonly: names of results (result_names()), a list or a text with commas; default: all. discard: "
+      "cycles that are "
+      "left out at the beginning. s_b: variance, about_rest or as_printed; neighbours: cutoff, delaunay or "
+      "voronoi; "
+      "cutoff: largest distance of neighbours, sigma; rest_height: height of the centre of mass of the bed "
+      "at rest, "
+      "sigma (docs/observables.md, docs/statistics.md). callback: called with (done, total).";
   module.def(
       "analyze_windows",
       [](const py::object& trajectory, std::int64_t window_cycles, const py::object& only,
@@ -196,16 +224,25 @@ void bind_analysis(py::module_& module) {
       py::arg("trajectory"), py::arg("window_cycles"), py::arg("only") = py::list(), py::kw_only(),
       py::arg("discard") = 0, py::arg("s_b") = "variance", py::arg("neighbours") = "cutoff",
       py::arg("rest_height") = py::none(), py::arg("cutoff") = py::none(), py::arg("callback") = py::none(),
-      header_text("analysis/runs/windows.hpp", "analyze_windows"));
+      (summary_text("analysis/runs/windows.hpp", "analyze_windows") +
+       "\n\ntrajectory: a Trajectory or the name of its file. window_cycles: cycles of a window." +
+       options_text)
+          .c_str());
   module.def("result_names", &analysis::result_names, header_text(kHeader, "result_names"));
   module.def(
       "analyze",
       [](const py::object& trajectory, const py::object& only, std::int64_t discard, std::int64_t cycles,
          const std::vector<std::int64_t>& tracers, const std::optional<std::array<double, 2>>& tracer_band,
          const std::string& s_b, const std::string& neighbours, double cell_radius, double field_cell,
-         std::optional<double> rest_height, std::optional<double> cutoff, const py::object& callback) {
+         std::optional<double> rest_height, std::optional<double> cutoff, const py::object& box,
+         const py::object& callback) {
         std::vector<std::shared_ptr<Trajectory>> trajectories;
-        if (py::isinstance<py::list>(trajectory) || py::isinstance<py::tuple>(trajectory))
+        if (py::isinstance<py::array>(trajectory))
+          trajectories.push_back(trajectory_of_points(trajectory, box));
+        else if (!box.is_none())
+          throw ConfigError({.file = {}, .key = "box"},
+                            "is that of an array of points; a trajectory has its own.");
+        else if (py::isinstance<py::list>(trajectory) || py::isinstance<py::tuple>(trajectory))
           for (const py::handle one : trajectory) trajectories.push_back(trajectory_of(one));
         else
           trajectories.push_back(trajectory_of(trajectory));
@@ -227,7 +264,20 @@ void bind_analysis(py::module_& module) {
       py::arg("tracer_band") = py::none(), py::arg("s_b") = "variance", py::arg("neighbours") = "cutoff",
       py::arg("cell_radius") = analysis::AnalysisOptions{}.cell_radius,
       py::arg("field_cell") = analysis::AnalysisOptions{}.field_cell, py::arg("rest_height") = py::none(),
-      py::arg("cutoff") = py::none(), py::arg("callback") = py::none(), header_text(kHeader, "analyze"));
+      py::arg("cutoff") = py::none(), py::arg("box") = py::none(), py::arg("callback") = py::none(),
+      (summary_text(kHeader, "analyze") +
+       "\n\ntrajectory: a Trajectory or the name of its file; a list of them, which are pooled; or an array "
+       "of points, "
+       "(frames, beads, 2) as (x, z), (frames, beads, 3) as (x, y, z), or one frame of it, of which every "
+       "frame counts "
+       "as a cycle. box: of such an array, a Box or the lengths of a periodic box; None: open." +
+       options_text +
+       "\ncycles: number of cycles to use; 0: all. tracers: slots of the tracers; tracer_band: (low, high), "
+       "heights of "
+       "the beads that serve as tracers, sigma. field_cell: edge of the cells of fields, sigma. cell_radius: "
+       "of "
+       "Voronoi cells, sigma.")
+          .c_str());
 }
 
 }  // namespace twincell::python

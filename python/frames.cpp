@@ -79,6 +79,9 @@ py::array array_of_picture(const cv::Mat& picture) {
 }
 
 cv::Mat picture_of_array(const py::handle& said) {
+  if (py::hasattr(said, "filled") && py::bool_(said.attr("mask").attr("any")()))
+    throw ConfigError({.file = {}, .key = "picture"},
+                      "has masked pixels; give the mask as a picture by the option mask.");
   auto array = py::array::ensure(said);
   if (!array) throw ConfigError({.file = {}, .key = "picture"}, "is no array of numbers.");
   if (array.ndim() != 2 || array.size() == 0) {
@@ -113,9 +116,6 @@ std::unique_ptr<imaging::FrameSource> source_of(const py::object& stack, std::st
     return imaging::open_frames(name);
   }
   name.clear();
-  // Frames of a whole stack are read again in C++.
-  if (py::hasattr(stack, "_whole_stack"))
-    if (const py::object whole = stack.attr("_whole_stack"); !whole.is_none()) return source_of(whole, name);
   py::object pictures = stack;
   if (py::isinstance<py::array>(stack)) {
     const auto array = stack.cast<py::array>();
@@ -133,6 +133,14 @@ std::unique_ptr<imaging::FrameSource> source_of(const py::object& stack, std::st
   }
   const std::size_t announced = py::hasattr(pictures, "__len__") ? py::len(pictures) : 0;
   return std::make_unique<IteratedFrames>(pictures, announced);
+}
+
+py::object stack_of_frames(const py::object& stack, std::string& frames) {
+  if (!py::hasattr(stack, "_part_of_stack")) return stack;
+  const py::object part = stack.attr("_part_of_stack")(frames);
+  if (part.is_none()) return stack;
+  frames = part[py::int_(1)].cast<std::string>();
+  return part[py::int_(0)];
 }
 
 void bind_frames(py::module_& module) {

@@ -20,4 +20,9 @@ cv::Mat picture_of_array(const py::handle& array);
 /// \param name receives the name of the stack; empty for pictures in memory
 std::unique_ptr<imaging::FrameSource> source_of(const py::object& stack, std::string& name);
 
+/// The stack that is read in C++ where an argument is twincell.Frames, a stack or a slice of it; another
+/// argument as it is. A reversed slice is iterated over. \param frames A:B:STEP of the argument, as the
+/// option says; becomes that of the stack
+py::object stack_of_frames(const py::object& stack, std::string& frames);
+
 }  // namespace twincell::python

@@ -3,7 +3,7 @@
 usage: header_docs.py ROOT OUTPUT SOURCE...
 
 Every header_text("HEADER", "SYMBOL") in a SOURCE, or header_text(kHeader, "SYMBOL") in one that defines kHeader, gets the comment of that symbol. SYMBOL is a function or a type, or
-TYPE::MEMBER. A symbol without a comment is an error.
+TYPE::MEMBER. A symbol without a comment is an error. summary_text(...) is likewise, without the parameters.
 """
 import re
 import sys
@@ -60,28 +60,47 @@ def plain(lines):
     return text.strip()
 
 
+def without_parameters(lines):
+    """The comment without its \\param paragraphs: the function of Python has other parameters."""
+    kept, skipping = [], False
+    for line in lines:
+        if re.match(r"\s*\\param\b", line):
+            skipping = True
+        elif re.match(r"\s*\\(returns?|throws|pre)\b", line) or not line.strip():
+            skipping = False
+        if not skipping:
+            kept.append(re.sub(r"\s*\\param\b.*", "", line))
+    return kept
+
+
 def main():
     root, output, sources = Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3:]
     wanted = set()
     for source in sources:
         text = Path(source).read_text(encoding="utf-8")
         header = re.search(r'kHeader = "([^"]+)"', text)
-        asked = re.findall(r'header_text\(\s*(?:kHeader|"([^"]+)"),\s*"([^"]+)"\)', text)
-        wanted |= {(named or header[1], symbol) for named, symbol in asked}
+        asked = re.findall(r'(header|summary)_text\(\s*(?:kHeader|"([^"]+)"),\s*"([^"]+)"\)', text)
+        wanted |= {(named or header[1], symbol, kind == "summary") for kind, named, symbol in asked}
     rows = []
-    for header, symbol in sorted(wanted):
+    for header, symbol, summary in sorted(wanted):
         try:
-            text = plain(comment_of((root / header).read_text(encoding="utf-8").splitlines(), symbol))
+            comment = comment_of((root / header).read_text(encoding="utf-8").splitlines(), symbol)
         except LookupError:
             sys.exit(f"header_docs.py: {header}: there is no comment of {symbol}.")
-        rows.append(f'    {{"{header}", "{symbol}", R"text({text})text"}},\n')
+        text = plain(without_parameters(comment) if summary else comment)
+        rows.append(f'    {{"{header}", "{symbol}", {str(summary).lower()}, R"text({text})text"}},\n')
     output.write_text(
         '#include "python/module.hpp"\n\n#include <string_view>\n\nnamespace twincell::python {\n\n'
-        "namespace {\nstruct Text {\n  std::string_view header, symbol;\n  const char* text;\n};\n"
-        f"constexpr Text kTexts[] = {{\n{''.join(rows)}}};\n}}  // namespace\n\n"
+        "namespace {\nstruct Text {\n  std::string_view header, symbol;\n  bool summary;\n  const char* text;\n};\n"
+        f"constexpr Text kTexts[] = {{\n{''.join(rows)}}};\n"
+        "const char* found(std::string_view header, std::string_view symbol, bool summary) {\n"
+        "  for (const Text& t : kTexts)\n"
+        "    if (t.header == header && t.symbol == symbol && t.summary == summary) return t.text;\n"
+        '  return "";\n}\n}  // namespace\n\n'
         "const char* header_text(std::string_view header, std::string_view symbol) {\n"
-        "  for (const Text& t : kTexts)\n    if (t.header == header && t.symbol == symbol) return t.text;\n"
-        '  return "";\n}\n\n}  // namespace twincell::python\n', encoding="utf-8")
+        "  return found(header, symbol, false);\n}\n"
+        "std::string summary_text(std::string_view header, std::string_view symbol) {\n"
+        "  return found(header, symbol, true);\n}\n\n}  // namespace twincell::python\n", encoding="utf-8")
 
 
 main()

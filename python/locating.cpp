@@ -93,8 +93,9 @@ std::unique_ptr<imaging::FrameSource> prepared_stack(const py::object& stack,
   if (request.flat == "stack" && name.empty())
     throw ConfigError({.file = {}, .key = "flat"},
                       "'stack' reads the stack twice, so it needs the name of a stack instead of arrays.");
-  const py::gil_scoped_release release;
-  return imaging::prepare_frames(std::move(frames), name, request, locator);
+  return unlocked(py::none(), [&](Progress& /*progress*/) {
+    return imaging::prepare_frames(std::move(frames), name, request, locator);
+  });
 }
 
 /// The options of beads and part of a stack, which `locate` and `track` share.
@@ -128,8 +129,10 @@ imaging::LocatingRequest locating_request(const py::object& diameter, const std:
   return request;
 }
 
-py::object locate_beads_of(const py::object& stack, const imaging::LocatingRequest& request, int threads,
+py::object locate_beads_of(const py::object& said, imaging::LocatingRequest request, int threads,
                            const py::object& callback) {
+  const std::string said_frames = request.frames;
+  const py::object stack = stack_of_frames(said, request.frames);
   const imaging::LocatorOptions given = imaging::locator_of(request);
   const imaging::Region region = imaging::region_of(request);
   const imaging::FrameRange range = imaging::frames_of(request);
@@ -191,7 +194,7 @@ py::object locate_beads_of(const py::object& stack, const imaging::LocatingReque
   settings["background"] = request.background;
   settings["roi"] = request.roi;
   settings["mask"] = request.mask;
-  settings["frames"] = request.frames;
+  settings["frames"] = said_frames;
   py::list per_frame;
   for (std::size_t f = 0; f < reports.size(); ++f) {
     py::dict one;
@@ -225,7 +228,8 @@ bool is_table(const py::object& stack) {
          imaging::is_located_table(stack.cast<std::filesystem::path>());
 }
 
-py::object track(const py::object& stack, TrackCall call, const py::object& callback) {
+py::object track(const py::object& said, TrackCall call, const py::object& callback) {
+  const py::object stack = stack_of_frames(said, call.film.locating.frames);
   std::string name;
   std::optional<Table> table;
   if (is_table(stack)) {
@@ -365,11 +369,23 @@ void bind_locating(py::module_& module) {
       py::arg("trust_stated_drive") = false, py::arg("shortest") = 1,
       py::arg("columns") = std::map<std::string, std::string>{}, py::arg("picture_size") = py::none(),
       py::arg("threads") = 0, py::arg("callback") = py::none(),
-      (std::string(header_text("calibration/drive/track_film.hpp", "track_film")) +
+      (summary_text("calibration/drive/track_film.hpp", "track_film") +
        "\n\nstack: as for `locate`; or a table of located beads, a DataFrame or the name of a CSV file, with "
-       "columns frame, x, y and optionally radius or diameter, sigma_x, sigma_y, tracer. columns: names of "
-       "columns of a table that are called otherwise, {\"x\": \"X\"}. picture_size: width and height of its "
-       "frames, px.")
+       "columns frame, x, y and optionally radius or diameter, sigma_x, sigma_y, tracer. output: H5MD file "
+       "to write; "
+       "None: in memory. cell: CELL.toml with scale, origin, size and drive of the cell; set: its keys, a "
+       "dict; "
+       "pixels_per_sigma, origin_px, cell_width, cell_height, drive_gamma, drive_amplitude, "
+       "frames_per_cycle, "
+       "first_phase, phase_lock and drive_hz state the same without a file. diameter to frames: as for "
+       "`locate`. "
+       "range: largest distance of a bead from its predicted position, bead diameters; memory: frames for "
+       "which a bead "
+       "may be missing; shortest: frames of the shortest track that is kept. trust_stated_drive: do not "
+       "check the drive "
+       "against the film. columns: names of columns of a table that are called otherwise, {\"x\": \"X\"}. "
+       "picture_size: width and height of its frames, px. Options as those of `twincell track` "
+       "(docs/tracking.md).")
           .c_str());
 }
 

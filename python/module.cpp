@@ -3,11 +3,16 @@
 #include "python/module.hpp"
 
 #include <fmt/format.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <new>
 #include <thread>
 
 #include "core/atomic_file.hpp"
+#include "core/cancellation.hpp"
+#include "core/constants.hpp"
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
 #include "imaging/stack/opencv_errors.hpp"
@@ -84,6 +89,46 @@ void translate(std::exception_ptr thrown) {
 
 }  // namespace
 
+namespace {
+
+/// The handler of Python, which the watch replaces.
+struct sigaction python_handler {};
+
+extern "C" void on_interrupt(int signal) {
+  request_cancellation(signal);
+  python_handler.sa_handler(signal);
+}
+
+bool is_main_thread() {
+  return ::syscall(SYS_gettid) == ::getpid();
+}
+
+}  // namespace
+
+InterruptWatch::InterruptWatch() {
+  struct sigaction now {};
+  if (!is_main_thread() || ::sigaction(SIGINT, nullptr, &now) != 0) return;
+  // A handler of the user's need not raise; it is asked at the next progress report.
+  const py::module_ signals = py::module_::import("signal");
+  if (!signals.attr("getsignal")(SIGINT).is(signals.attr("default_int_handler"))) return;
+  const bool callable =
+      (now.sa_flags & SA_SIGINFO) == 0 && now.sa_handler != SIG_DFL && now.sa_handler != SIG_IGN;
+  if (!callable || now.sa_handler == &on_interrupt) return;  // an outer call watches
+  python_handler = now;
+  struct sigaction ours = now;
+  ours.sa_handler = &on_interrupt;
+  installed_ = ::sigaction(SIGINT, &ours, nullptr) == 0;
+}
+
+InterruptWatch::~InterruptWatch() {
+  if (!installed_) return;
+  struct sigaction now {};
+  // A handler that a callback has set stays.
+  if (::sigaction(SIGINT, nullptr, &now) == 0 && now.sa_handler == &on_interrupt)
+    ::sigaction(SIGINT, &python_handler, nullptr);
+  withdraw_cancellation();
+}
+
 void PythonProgress::update(std::int64_t done, std::int64_t total) {
   constexpr std::chrono::milliseconds kPause{100};
   // A callback is called at the beginning and at the end in any case.
@@ -117,7 +162,38 @@ int threads_of(int threads) {
   return threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }
 
-std::vector<Vec3> points_of(const py::handle& points, const std::string& name) {
+Box box_of(const py::object& said) {
+  if (py::isinstance<Box>(said)) return said.cast<Box>();
+  Box box;
+  box.boundary = {Boundary::open, Boundary::open, Boundary::open};
+  if (said.is_none()) return box;
+  std::vector<double> lengths;
+  try {
+    lengths = said.cast<std::vector<double>>();
+  } catch (const py::cast_error&) {
+    throw ConfigError({.file = {}, .key = "box"},
+                      "must be a Box, None, or the lengths of a periodic box, 2 (x, z) or 3 (x, y, z).");
+  }
+  if (lengths.size() != 2 && lengths.size() != 3)
+    throw ConfigError(
+        {.file = {}, .key = "box"},
+        fmt::format("has {} lengths; a periodic box has 2 (x, z) or 3 (x, y, z).", lengths.size()));
+  for (std::size_t k = 0; k < lengths.size(); ++k) {
+    require_range({.file = {}, .key = "box"}, lengths[k], 0, std::nullopt, true);
+    const std::size_t axis = lengths.size() == 2 ? 2 * k : k;
+    box.boundary[axis] = Boundary::periodic;
+    box.upper[static_cast<Eigen::Index>(axis)] = lengths[k];
+  }
+  return box;
+}
+
+py::object without_mask(const py::handle& said) {
+  return py::hasattr(said, "filled") ? said.attr("astype")("float64").attr("filled")(kNaN)
+                                     : py::reinterpret_borrow<py::object>(said);
+}
+
+std::vector<Vec3> points_of(const py::handle& said, const std::string& name) {
+  const py::object points = without_mask(said);
   const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(points);
   if (!array) throw ConfigError({.file = {}, .key = name}, "is no array of numbers.");
   if (array.ndim() != 2 || (array.shape(1) != 2 && array.shape(1) != 3)) {

@@ -29,6 +29,8 @@ namespace py = pybind11;
 
 /// The comment of a symbol in a header of the source tree, which header_docs.py collects at build time.
 const char* header_text(std::string_view header, std::string_view symbol);
+/// The same without the parameters, for a function whose parameters are others in Python.
+std::string summary_text(std::string_view header, std::string_view symbol);
 
 /// Forwards the progress of work that runs without the interpreter's lock: at most ten times a second it
 /// takes the lock, lets Python handle signals, and calls `callback(done, total)` if there is one. If either
@@ -49,16 +51,31 @@ class PythonProgress : public Progress {
   bool called_ = false;
 };
 
+/// During its lifetime in the main thread, Ctrl-C also requests cancellation (core/cancellation.hpp), so that
+/// work between two progress reports stops. Python's own handler is called too.
+class InterruptWatch {
+ public:
+  InterruptWatch();
+  InterruptWatch(const InterruptWatch&) = delete;
+  InterruptWatch& operator=(const InterruptWatch&) = delete;
+  ~InterruptWatch();
+
+ private:
+  bool installed_ = false;
+};
+
 /// Calls work(progress) without the interpreter's lock.
 /// \param callback None, or a function of (done, total)
 template <class Work>
 auto unlocked(const py::object& callback, const Work& work) {
   PythonProgress progress(callback);
+  const InterruptWatch watch;
   try {
     const py::gil_scoped_release release;
     return work(static_cast<Progress&>(progress));
   } catch (...) {
     if (progress.raised()) progress.rethrow();
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();  // KeyboardInterrupt
     throw;
   }
 }
@@ -105,9 +122,16 @@ Provenance provenance_of(const std::string& call, int threads = 1);
 /// Number of threads: `threads`, or the number of cores if it is 0. \throws ConfigError below 0, above 4096
 int threads_of(int threads);
 
+/// Numbers without a mask: those that a NumPy mask hides are NaN. Anything else as it is.
+py::object without_mask(const py::handle& said);
+
 /// Points (N, 2) as (x, z), or (N, 3) as (x, y, z).
 /// \throws ConfigError for another shape \param name of the argument, for the message
 std::vector<Vec3> points_of(const py::handle& points, const std::string& name);
+
+/// The box of an argument: a Box; None (open); or the two or three lengths of a periodic box.
+/// \throws ConfigError for anything else
+Box box_of(const py::object& said);
 
 void bind_trajectory(py::module_& module);
 void bind_frames(py::module_& module);

@@ -29,32 +29,6 @@ Frame frame_of(const py::object& points) {
   return frame;
 }
 
-/// The box of an argument: a Box; None (open); or the two or three lengths of a periodic box.
-Box box_of(const py::object& said) {
-  if (py::isinstance<Box>(said)) return said.cast<Box>();
-  Box box;
-  box.boundary = {Boundary::open, Boundary::open, Boundary::open};
-  if (said.is_none()) return box;
-  std::vector<double> lengths;
-  try {
-    lengths = said.cast<std::vector<double>>();
-  } catch (const py::cast_error&) {
-    throw ConfigError({.file = {}, .key = "box"},
-                      "must be a Box, None, or the lengths of a periodic box, 2 (x, z) or 3 (x, y, z).");
-  }
-  if (lengths.size() != 2 && lengths.size() != 3)
-    throw ConfigError(
-        {.file = {}, .key = "box"},
-        fmt::format("has {} lengths; a periodic box has 2 (x, z) or 3 (x, y, z).", lengths.size()));
-  for (std::size_t k = 0; k < lengths.size(); ++k) {
-    require_range({.file = {}, .key = "box"}, lengths[k], 0, std::nullopt, true);
-    const std::size_t axis = lengths.size() == 2 ? 2 * k : k;
-    box.boundary[axis] = Boundary::periodic;
-    box.upper[static_cast<Eigen::Index>(axis)] = lengths[k];
-  }
-  return box;
-}
-
 double checked_length(const char* name, double value) {
   require_range({.file = {}, .key = name}, value, 0, std::nullopt, true);
   return value;
@@ -95,17 +69,26 @@ struct Bonds {
   std::vector<double> weight;
 };
 
-Bonds bonds_of(const py::object& points, const py::object& box, const std::string& rule, double cutoff,
-               double cell_radius) {
+/// The bonds of points; `use(bonds)` runs without the interpreter's lock too.
+template <class Use>
+auto with_bonds(const py::object& points, const py::object& box, const std::string& rule, double cutoff,
+                double cell_radius, Use use) {
   const Frame frame = frame_of(points);
   const Box cell = box_of(box);
   const analysis::NeighbourRule named = analysis::neighbour_rule_named(rule);
-  if (named == analysis::NeighbourRule::cutoff)
-    return {analysis::find_neighbours(frame, cell, checked_length("cutoff", cutoff)), {}};
+  const bool near = named == analysis::NeighbourRule::cutoff;
+  if (near) checked_length("cutoff", cutoff);
+  const py::gil_scoped_release release;
+  if (near) return use(Bonds{analysis::find_neighbours(frame, cell, cutoff), {}});
   analysis::VoronoiCells cells = cells_of(frame, cell, cell_radius);
-  return {std::move(cells.neighbours),
-          named == analysis::NeighbourRule::voronoi ? std::move(cells.edge) : std::vector<double>{}};
+  return use(Bonds{std::move(cells.neighbours), named == analysis::NeighbourRule::voronoi
+                                                    ? std::move(cells.edge)
+                                                    : std::vector<double>{}});
 }
+
+constexpr auto kOrder = [](const Bonds& bonds) {
+  return analysis::bond_order(bonds.neighbours, bonds.weight);
+};
 
 }  // namespace
 
@@ -131,11 +114,12 @@ void bind_observables(py::module_& module) {
       "coordination",
       [](const py::object& points, const py::object& box, const std::string& neighbours, double cutoff,
          double cell_radius) {
-        const Bonds bonds = bonds_of(points, box, neighbours, cutoff, cell_radius);
-        std::vector<std::int64_t> counts;
-        for (std::size_t i = 0; i + 1 < bonds.neighbours.first.size(); ++i)
-          counts.push_back(static_cast<std::int64_t>(bonds.neighbours.count(i)));
-        return array_of(std::move(counts));
+        return array_of(with_bonds(points, box, neighbours, cutoff, cell_radius, [](const Bonds& bonds) {
+          std::vector<std::int64_t> counts;
+          for (std::size_t i = 0; i + 1 < bonds.neighbours.first.size(); ++i)
+            counts.push_back(static_cast<std::int64_t>(bonds.neighbours.count(i)));
+          return counts;
+        }));
       },
       py::arg("points"), py::arg("box") = py::none(), py::arg("neighbours") = "cutoff",
       py::arg("cutoff") = kCutoff, py::arg("cell_radius") = analysis::kCellRadius,
@@ -144,8 +128,7 @@ void bind_observables(py::module_& module) {
       "bond_order",
       [](const py::object& points, const py::object& box, const std::string& neighbours, double cutoff,
          double cell_radius) {
-        const Bonds bonds = bonds_of(points, box, neighbours, cutoff, cell_radius);
-        analysis::BondOrder order = analysis::bond_order(bonds.neighbours, bonds.weight);
+        analysis::BondOrder order = with_bonds(points, box, neighbours, cutoff, cell_radius, kOrder);
         py::dict d;
         d["q6"] = array_of(std::move(order.q6));
         d["psi6"] = array_of(std::move(order.psi6));
@@ -156,13 +139,12 @@ void bind_observables(py::module_& module) {
       },
       py::arg("points"), py::arg("box") = py::none(), py::arg("neighbours") = "cutoff",
       py::arg("cutoff") = kCutoff, py::arg("cell_radius") = analysis::kCellRadius,
-      (header_text("analysis/neighbours/bond_order.hpp", "bond_order") + bonds_text).c_str());
+      (summary_text("analysis/neighbours/bond_order.hpp", "bond_order") + bonds_text).c_str());
   module.def(
       "hexatic_order",
       [](const py::object& points, const py::object& box, const std::string& neighbours, double cutoff,
          double cell_radius) {
-        const Bonds bonds = bonds_of(points, box, neighbours, cutoff, cell_radius);
-        const analysis::BondOrder order = analysis::bond_order(bonds.neighbours, bonds.weight);
+        const analysis::BondOrder order = with_bonds(points, box, neighbours, cutoff, cell_radius, kOrder);
         std::vector<std::complex<double>> psi;
         for (std::size_t i = 0; i < order.psi6.size(); ++i)
           psi.push_back(std::isfinite(order.angle[i])

@@ -3,12 +3,14 @@
 #include "python/trajectory.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <type_traits>
 
+#include "core/constants.hpp"
 #include "core/error.hpp"
 #include "trajectory/boundary_words.hpp"
 #include "trajectory/box.hpp"
@@ -16,6 +18,34 @@
 #include "trajectory/wrapped_positions.hpp"
 
 namespace twincell::python {
+
+namespace {
+
+/// Device, inode, size and time of change of a file; nothing if it cannot be read.
+std::optional<FileIdentity> identity(const std::filesystem::path& path) {
+  struct ::stat s {};
+  if (::stat(path.c_str(), &s) != 0) return {};
+  return FileIdentity{path, s.st_dev, s.st_ino, static_cast<std::uintmax_t>(s.st_size),
+                      static_cast<std::int64_t>(s.st_mtim.tv_sec) * 1'000'000'000 + s.st_mtim.tv_nsec};
+}
+
+}  // namespace
+
+FileIdentity FileIdentity::of(const std::filesystem::path& file) {
+  const auto found = identity(std::filesystem::absolute(file));
+  if (!found) throw InputError({.file = file.string(), .key = {}}, "the file cannot be read.");
+  return *found;
+}
+
+bool FileIdentity::holds() const {
+  const auto now = identity(path);
+  return now && now->device == device && now->inode == inode && now->bytes == bytes &&
+         now->changed_ns == changed_ns;
+}
+
+std::optional<std::filesystem::path> Trajectory::file() const {
+  return file_ && file_->holds() ? std::optional(file_->path) : std::nullopt;
+}
 
 std::shared_ptr<const Frame> Trajectory::frame(std::size_t index) {
   if (memory_ != nullptr) return memory_->frames()[index];
@@ -38,6 +68,9 @@ void require_no_input(const std::filesystem::path& output, const std::vector<std
 
 std::shared_ptr<Trajectory> trajectory_of(const py::handle& said) {
   if (py::isinstance<Trajectory>(said)) return said.cast<std::shared_ptr<Trajectory>>();
+  if (!py::isinstance<py::str>(said) && !py::hasattr(said, "__fspath__"))
+    throw py::type_error(fmt::format("a Trajectory or the name of its file is needed, not {}",
+                                     py::str(py::type::of(said).attr("__name__")).cast<std::string>()));
   return std::make_shared<Trajectory>(said.cast<std::filesystem::path>());
 }
 
@@ -114,7 +147,9 @@ py::array of_frames(Trajectory& trajectory, Value value) {
   std::vector<decltype(value(Frame{}))> values;
   values.reserve(trajectory.n_frames());
   for (std::size_t t = 0; t < trajectory.n_frames(); ++t) values.push_back(value(*trajectory.frame(t)));
-  return array_of(std::move(values));
+  py::array array = array_of(std::move(values));
+  array.attr("setflags")(py::arg("write") = false);  // it is a copy, in which a change would be lost
+  return array;
 }
 
 template <class T>
@@ -175,6 +210,26 @@ void bind_box(py::module_& module) {
       .def_property_readonly(
           "boundary", [](const Box& b) { return boundary_words(b); },
           header_text("trajectory/box.hpp", "Boundary"))
+      .def(py::pickle(
+          [](const Box& b) {
+            return py::make_tuple(std::array{b.lower.x(), b.lower.y(), b.lower.z()},
+                                  std::array{b.upper.x(), b.upper.y(), b.upper.z()}, boundary_words(b),
+                                  b.dimension, b.side_tilt);
+          },
+          [](const py::tuple& state) {
+            Box b;
+            const auto lower = state[0].cast<std::array<double, 3>>(),
+                       upper = state[1].cast<std::array<double, 3>>();
+            const auto words = state[2].cast<std::array<std::string, 3>>();
+            for (std::size_t k = 0; k < 3; ++k) {
+              b.lower[static_cast<Eigen::Index>(k)] = lower[k];
+              b.upper[static_cast<Eigen::Index>(k)] = upper[k];
+              b.boundary[k] = boundary_named(words[k]);
+            }
+            b.dimension = state[3].cast<int>();
+            b.side_tilt = state[4].cast<decltype(b.side_tilt)>();
+            return b;
+          }))
       .def("__repr__", [](const Box& b) {
         return fmt::format("Box(({:g}, {:g}, {:g}), ({:g}, {:g}, {:g}), ({}, {}, {}), dimension={})",
                            b.lower.x(), b.lower.y(), b.lower.z(), b.upper.x(), b.upper.y(), b.upper.z(),
@@ -217,7 +272,7 @@ class VectorArray {
  public:
   VectorArray(const py::object& said, const char* name, py::ssize_t frames, py::ssize_t beads) {
     if (said.is_none()) return;
-    values_ = Numbers::ensure(said);
+    values_ = Numbers::ensure(without_mask(said));
     if (!values_) throw ConfigError({.file = {}, .key = name}, "is no array of numbers.");
     const bool fits = values_.ndim() == 3 && (values_.shape(2) == 2 || values_.shape(2) == 3) &&
                       (frames < 0 || (values_.shape(0) == frames && values_.shape(1) == beads));
@@ -255,7 +310,7 @@ template <class T>
 std::vector<T> numbers_of(const py::object& said, const char* name, py::ssize_t length, const char* of,
                           double least = 0, double most = HUGE_VAL) {
   if (said.is_none()) return {};
-  const auto values = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(said);
+  const auto values = Numbers::ensure(without_mask(said));
   if (!values) throw ConfigError({.file = {}, .key = name}, "is no list of numbers.");
   if (values.ndim() != 1 || values.shape(0) != length)
     throw ConfigError({.file = {}, .key = name},
@@ -302,7 +357,7 @@ std::shared_ptr<Trajectory> from_arrays(const py::object& positions, const py::o
                                         const py::object& masses, const py::object& tracers,
                                         const py::object& phase, const py::object& cycle,
                                         const py::object& time, const py::object& step,
-                                        const py::object& plate_height, const std::optional<Box>& box,
+                                        const py::object& plate_height, const py::object& said_box,
                                         const std::optional<Drive>& drive, int phases_per_cycle,
                                         const std::string& source) {
   const VectorArray r(positions, "positions", -1, -1);
@@ -364,12 +419,13 @@ std::shared_ptr<Trajectory> from_arrays(const py::object& positions, const py::o
                   .phase = !phases.empty(),
                   .plate_height = !heights.empty(),
                   .position_sigma = s.given()};
-  if (box) {
-    info.box = *box;
-    if (box->dimension == 2 && r.extent(2) == 3 && low.y() < high.y())
-      throw ConfigError(
-          {.file = {}, .key = "box"},
-          "is planar, but the positions are not; three-dimensional ones need Box(dimension=3).");
+  if (!said_box.is_none()) {
+    info.box = box_of(said_box);
+    if (!py::isinstance<Box>(said_box)) info.box.dimension = info.box.periodic(Axis::y) ? 3 : 2;
+    if (info.box.dimension == 2 && r.extent(2) == 3 && low.y() < high.y())
+      throw ConfigError({.file = {}, .key = "box"},
+                        "is planar, but the positions are not; three-dimensional ones need Box(dimension=3) "
+                        "or three lengths.");
     unwrap(all, info.box);
   } else {  // open on all sides, around the beads
     info.box.dimension = r.extent(2);
@@ -380,19 +436,38 @@ std::shared_ptr<Trajectory> from_arrays(const py::object& positions, const py::o
   }
   const char* const name = "from_arrays";
   require_ranges(info, name);
+  require_order(phases, cycles, name);
   SharedFrames memory(std::move(info));
   for (std::size_t t = 0; t < all.size(); ++t) {
     Frame& frame = all[t];
-    require_ranges(frame, t, memory.info(), name);
     if (missing) {
       frame.id.resize(memory.info().n_beads, -1);
       for (std::size_t i = 0; i < memory.info().n_beads; ++i)
         if (frame.position[i].allFinite()) frame.id[i] = static_cast<std::int64_t>(i);
     }
+    require_ranges(frame, t, memory.info(), name);
+    require_filled_slots(frame, t, name);
     memory.append(frame);
   }
   return std::make_shared<Trajectory>(std::move(memory));
 }
+
+}  // namespace
+
+std::shared_ptr<Trajectory> trajectory_of_points(const py::object& points, const py::object& box) {
+  const py::module_ numpy = py::module_::import("numpy");
+  py::object frames = numpy.attr("asarray")(without_mask(points));
+  if (frames.attr("ndim").cast<int>() == 2) frames = numpy.attr("expand_dims")(frames, 0);
+  if (frames.attr("ndim").cast<int>() != 3)
+    throw ConfigError({.file = {}, .key = "trajectory"},
+                      "is an array of another shape than (frames, beads, 2 or 3) or (beads, 2 or 3).");
+  const py::ssize_t n = py::len(frames);
+  const py::object none = py::none();
+  return from_arrays(frames, none, none, none, none, none, numpy.attr("zeros")(n), numpy.attr("arange")(n),
+                     none, none, none, box, {}, 1, "unknown");
+}
+
+namespace {
 
 /// A folder for temporary files; the caller calls its cleanup().
 py::object temporary_folder() {
@@ -409,10 +484,13 @@ void write(Trajectory& trajectory, const std::filesystem::path& path) {
   writer.finish();
 }
 
-/// State for pickle: of a file its absolute path, in memory the bytes of its H5MD file.
+/// State for pickle: of a file its absolute path, its size and the time of its last change; in memory the
+/// bytes of its H5MD file.
 py::tuple pickled(Trajectory& trajectory) {
-  if (trajectory.in_file())
-    return py::make_tuple(std::filesystem::absolute(trajectory.source().name()).string());
+  if (const auto file = trajectory.file()) {
+    const FileIdentity id = FileIdentity::of(*file);
+    return py::make_tuple(id.path.string(), id.bytes, id.changed_ns);
+  }
   const py::object folder = temporary_folder();
   write(trajectory, file_in(folder));
   const py::object bytes =
@@ -421,8 +499,15 @@ py::tuple pickled(Trajectory& trajectory) {
   return py::make_tuple(bytes);
 }
 std::shared_ptr<Trajectory> unpickled(const py::tuple& state) {
-  if (py::isinstance<py::str>(state[0]))
-    return std::make_shared<Trajectory>(std::filesystem::path(state[0].cast<std::string>()));
+  if (py::isinstance<py::str>(state[0])) {
+    const std::filesystem::path path(state[0].cast<std::string>());
+    if (state.size() > 2)
+      if (const FileIdentity id = FileIdentity::of(path);
+          id.bytes != state[1].cast<std::uintmax_t>() || id.changed_ns != state[2].cast<std::int64_t>())
+        throw InputError({.file = path.string(), .key = {}},
+                         "the file was replaced or changed since the trajectory was pickled.");
+    return std::make_shared<Trajectory>(path);
+  }
   const py::object folder = temporary_folder();
   py::module_::import("pathlib").attr("Path")(file_in(folder).string()).attr("write_bytes")(state[0]);
   std::optional<SharedFrames> frames;
@@ -434,6 +519,12 @@ std::shared_ptr<Trajectory> unpickled(const py::tuple& state) {
   }
   folder.attr("cleanup")();
   return std::make_shared<Trajectory>(std::move(*frames));
+}
+
+/// \param of_bead text of the column of one frame
+std::string of_frame_text(const std::string& what, const std::string& of_bead) {
+  return "Column of frames, `column[t]`: an array (n_beads, 3) with " + what +
+         " of every slot in frame t; None if the trajectory has no such column. In C++: " + of_bead;
 }
 
 }  // namespace
@@ -504,8 +595,9 @@ void bind_trajectory(py::module_& module) {
           "A trajectory in memory, so that data of any origin can be analysed.\n\n"
           "positions: (frames, beads, 2) as (x, z) or (frames, beads, 3) as (x, y, z), sigma; NaN where a "
           "bead is missing. The other arguments are the columns of the same names: vectors have the shape of "
-          "positions, numbers of beads (beads,), numbers of frames (frames,). Without a box the cell is open "
-          "on all sides. Arrays are copied.")
+          "positions, numbers of beads (beads,), numbers of frames (frames,). box: a Box, or the lengths (x, "
+          "z) "
+          "or (x, y, z) of a periodic one; without it the cell is open on all sides. Arrays are copied.")
       .def("write", &write, py::arg("path"), header_text("trajectory/formats/h5md_file.hpp", "H5mdWriter"))
       .def("__len__", &Trajectory::n_frames)
       .def_property_readonly("n_frames", &Trajectory::n_frames, "Number of frames.")
@@ -514,14 +606,16 @@ void bind_trajectory(py::module_& module) {
           "Number of slots: slot i is the same bead in every frame.")
       .def_property_readonly(
           "name", [](const Trajectory& t) { return t.source().name(); }, "The file, or \"memory\".")
+      .def_property_readonly("_file", &Trajectory::file)
       .def_property_readonly("positions", column(nullptr, &Frame::position),
-                             header_text(kHeader, "Frame::position"))
+                             of_frame_text("x, y, z", header_text(kHeader, "Frame::position")).c_str())
       .def_property_readonly("velocities", column(&Columns::velocity, &Frame::velocity),
-                             header_text(kHeader, "Frame::velocity"))
+                             of_frame_text("the velocity", header_text(kHeader, "Frame::velocity")).c_str())
       .def_property_readonly("spins", column(&Columns::spin, &Frame::spin),
-                             header_text(kHeader, "Frame::spin"))
-      .def_property_readonly("position_sigma", column(&Columns::position_sigma, &Frame::position_sigma),
-                             header_text(kHeader, "Frame::position_sigma"))
+                             of_frame_text("the spin", header_text(kHeader, "Frame::spin")).c_str())
+      .def_property_readonly(
+          "position_sigma", column(&Columns::position_sigma, &Frame::position_sigma),
+          of_frame_text("the uncertainty of x, y, z", header_text(kHeader, "Frame::position_sigma")).c_str())
       .def_property_readonly(
           "contacts",
           [](const std::shared_ptr<Trajectory>& t) -> py::object {

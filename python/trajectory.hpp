@@ -2,7 +2,10 @@
 /// \file
 /// The class Trajectory of the Python module: one trajectory, in memory or in a file.
 
+#include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,29 +36,49 @@ class SharedFrames : public TrajectorySource, public TrajectorySink {
 /// \throws ConfigError naming the output
 void require_no_input(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs);
 
+/// A file as it was at some time.
+struct FileIdentity {
+  std::filesystem::path path;  ///< absolute
+  std::uintmax_t device = 0, inode = 0, bytes = 0;
+  std::int64_t changed_ns = 0;  ///< time of the last change
+
+  /// \throws InputError if there is no such file
+  static FileIdentity of(const std::filesystem::path& file);
+  /// Whether the file at `path` is the same file with the same content.
+  [[nodiscard]] bool holds() const;
+};
+
 /// A trajectory, and of a file the frame that was read last. An array of a column keeps its frame alive.
 class Trajectory {
  public:
   explicit Trajectory(SharedFrames frames)
       : source_(std::make_unique<SharedFrames>(std::move(frames))),
         memory_(static_cast<const SharedFrames*>(source_.get())) {}
-  explicit Trajectory(const std::filesystem::path& file) : source_(std::make_unique<H5mdReader>(file)) {}
+  explicit Trajectory(const std::filesystem::path& file)
+      : source_(std::make_unique<H5mdReader>(file)), file_(FileIdentity::of(file)) {}
 
   [[nodiscard]] const TrajectorySource& source() const { return *source_; }
   [[nodiscard]] const TrajectoryInfo& info() const { return source_->info(); }
   [[nodiscard]] std::size_t n_frames() const { return source_->n_frames(); }
-  [[nodiscard]] bool in_file() const { return memory_ == nullptr; }
+  /// Absolute path of the file, as long as it is the one that was opened; nothing in memory, and after the
+  /// file was replaced, changed or removed.
+  [[nodiscard]] std::optional<std::filesystem::path> file() const;
   /// Frame `index`. \pre index < n_frames()
   std::shared_ptr<const Frame> frame(std::size_t index);
 
  private:
   std::unique_ptr<TrajectorySource> source_;
   const SharedFrames* memory_ = nullptr;  ///< source_, if it is in memory
+  std::optional<FileIdentity> file_;
   std::shared_ptr<const Frame> last_;
   std::size_t last_index_ = 0;
 };
 
-/// The trajectory of an argument: a Trajectory, or the name of a file.
+/// The trajectory of an argument: a Trajectory, or the name of a file. \throws TypeError for anything else
 std::shared_ptr<Trajectory> trajectory_of(const py::handle& said);
+
+/// Frames of points (T, N, 2 or 3), or one of (N, 2 or 3), as a trajectory in memory. Each counts as a cycle,
+/// so that correlations over cycles are over frames. \param box as box_of
+std::shared_ptr<Trajectory> trajectory_of_points(const py::object& points, const py::object& box);
 
 }  // namespace twincell::python

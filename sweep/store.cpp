@@ -37,7 +37,7 @@ std::string sum_of(nlohmann::json document) {
 }
 
 /// Checks that a document is the complete result of this point. Its readers rely on these keys and types.
-/// Results of earlier versions have no checksum. \throws InputError naming the key
+/// Results of the first versions have no checksum. \throws InputError naming the key
 void require_result(const JsonView& result, const Point& point) {
   if (const JsonView id = result.at("id"); id.text() != point.id)
     id.refuse(fmt::format("is '{}', but the folder is that of point '{}'", id.text(), point.id));
@@ -46,6 +46,9 @@ void require_result(const JsonView& result, const Point& point) {
   if (const auto seconds = computed.find("seconds")) (void)seconds->number_or_nan();
   if (const auto sum = result.find(kSum); sum && sum->text() != sum_of(result.value()))
     sum->refuse("does not fit the content");
+  // Versions that store the processor time store a checksum too.
+  if (!result.has(kSum) && computed.has("processor_seconds"))
+    result.refuse("has no sha256, so it was changed by hand");
   if (const auto failed = result.find("failed"))
     (void)failed->text();
   else

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/error.hpp"
 
@@ -61,17 +64,52 @@ void require_ranges(const TrajectoryInfo& info, const std::string& name) {
       refuse(std::string("parameters/scale/") + word, fmt::format("is {:g}; it must be above 0.", *value));
 }
 
+void require_filled_slots(const Frame& frame, std::size_t index, const std::string& name) {
+  for (std::size_t i = 0; i < frame.position.size(); ++i)
+    if (frame.present(i) != frame.position[i].allFinite())
+      throw InputError({name, 0, 0, fmt::format("frame {}", index)},
+                       frame.present(i)
+                           ? fmt::format("slot {} is a bead without a finite position.", i)
+                           : fmt::format("slot {} is empty but has a position; it must be NaN.", i));
+}
+
+void require_order(std::span<const std::int32_t> phases, std::span<const std::int64_t> cycles,
+                   const std::string& name) {
+  std::optional<std::size_t> before;
+  for (std::size_t f = 0; f < std::min(phases.size(), cycles.size()); ++f) {
+    if (phases[f] < 0) continue;
+    if (before && std::pair(cycles[f], phases[f]) <= std::pair(cycles[*before], phases[*before]))
+      throw InputError(
+          {name, 0, 0, fmt::format("frame {}", f)},
+          fmt::format("has phase {} of cycle {}, which does not come after phase {} of cycle {} of frame {}.",
+                      phases[f], cycles[f], phases[*before], cycles[*before], *before));
+    before = f;
+  }
+}
+
 void require_ranges(const Frame& frame, std::size_t index, const TrajectoryInfo& info,
                     const std::string& name) {
   constexpr std::int64_t kMostCycles = 1'000'000'000'000;
   const auto refuse = [&](const std::string& complaint) {
     throw InputError({name, 0, 0, fmt::format("frame {}", index)}, complaint);
   };
-  for (std::size_t i = 0; i < frame.position.size(); ++i)
+  for (std::size_t i = 0; i < frame.position.size(); ++i) {
     for (const double x : frame.position[i])
       if (std::abs(x) > kFarthestPosition)  // NaN: the bead is missing
         refuse(
             fmt::format("bead {} is at {:g}; positions must be within {:g} of 0.", i, x, kFarthestPosition));
+  }
+  std::vector<std::int64_t> ids;
+  std::copy_if(frame.id.begin(), frame.id.end(), std::back_inserter(ids), [](auto id) { return id >= 0; });
+  std::sort(ids.begin(), ids.end());
+  if (const auto twice = std::adjacent_find(ids.begin(), ids.end()); twice != ids.end())
+    refuse(fmt::format("the id {} occurs twice.", *twice));
+  for (std::size_t i = 0; i < frame.position_sigma.size(); ++i)
+    for (const double s : frame.position_sigma[i])
+      if (s < 0) refuse(fmt::format("the uncertainty of bead {} is {:g}; it must not be negative.", i, s));
+  for (const Vec3& t : {frame.time_mean.temperature, frame.time_mean.temperature_coarse})
+    if ((t.array() < 0).any())
+      refuse(fmt::format("a temperature is {:g}; it must not be negative.", t.minCoeff()));
   if (!info.columns.phase) return;
   if (frame.phase < -1 || frame.phase >= std::max(info.phases_per_cycle, 1))
     refuse(fmt::format("its phase is {}; it must be below {} phases per cycle.", frame.phase,

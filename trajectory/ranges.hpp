@@ -4,6 +4,8 @@
 /// indices out of range, or searches that do not end.
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 
 #include "trajectory/trajectory.hpp"
@@ -17,8 +19,18 @@ inline constexpr double kFarthestPosition = 1e7;
 /// \throws InputError naming the number and its range
 void require_ranges(const TrajectoryInfo& info, const std::string& name);
 
-/// Checks positions, phase and cycle of a frame. \throws InputError likewise
+/// Checks positions, identities, uncertainties, temperatures, phase and cycle of a frame. \throws InputError
+/// likewise
 void require_ranges(const Frame& frame, std::size_t index, const TrajectoryInfo& info,
                     const std::string& name);
+
+/// Checks that a slot has a finite position exactly if it is filled. Files of other programs need not keep
+/// this. \throws InputError naming the frame and the slot
+void require_filled_slots(const Frame& frame, std::size_t index, const std::string& name);
+
+/// Checks that each frame that has a phase comes after the one before it that has.
+/// \param phases, cycles [frames] \throws InputError naming both frames
+void require_order(std::span<const std::int32_t> phases, std::span<const std::int64_t> cycles,
+                   const std::string& name);
 
 }  // namespace twincell

@@ -101,14 +101,23 @@ std::optional<imaging::LocatorOptions> survey_beads(CellSurvey& s, const SurveyO
   return found;
 }
 
-/// Whether a bead lies below the plate by more than a third of its diameter. The lowest edge is then no plate
-/// but the lower side of the bed or the picture's border.
+/// Whether beads lie below the plate by more than a third of their diameter. The lowest edge is then no plate
+/// but the lower side of the bed or the picture's border. Single discs, and discs beyond the walls, are dirt
+/// or misread.
 bool beads_below_plate(const CellSurvey& s) {
   const auto& heights = s.geometry->heights;
   if (s.frame >= heights.size() || !std::isfinite(heights[s.frame].height_px)) return false;
   const double row = s.geometry->plate_row - heights[s.frame].height_px;
-  return std::any_of(s.discs.begin(), s.discs.end(),
-                     [&](const imaging::Detection& d) { return d.y + d.radius > row + 2 * d.radius / 3; });
+  constexpr double kShare = 0.03;  // of the beads
+  const auto x_of = [&](bool seen, const char* wall, double otherwise) {
+    return seen ? s.geometry->fit.value(wall) : otherwise;
+  };
+  const double left = x_of(s.geometry->has_left, "x_left", 0),
+               right = x_of(s.geometry->has_right, "x_right", s.geometry->size.width);
+  const auto below = std::count_if(s.discs.begin(), s.discs.end(), [&](const imaging::Detection& d) {
+    return d.x > left && d.x < right && d.y + d.radius > row + 2 * d.radius / 3;
+  });
+  return below > 1 && static_cast<double>(below) > kShare * static_cast<double>(s.discs.size());
 }
 
 /// The fitted motion, if the lowest edge moves as a plate does.
@@ -154,11 +163,10 @@ void survey_plate(CellSurvey& s, const SurveyOptions& options, const std::vector
   s.notes.insert(s.notes.end(), s.drive->notes.begin(), s.drive->notes.end());
   if (s.drive->frames_per_cycle == 0)
     s.missing.push_back(
-        {"the number of frames per cycle",
+        {kFramesPerCycle,
          fmt::format("the period of {:.6g} +- {:.1g} frames is not a whole number over the stack",
                      s.drive->period, s.drive->period_error),
-         "calibrate plate --phases LIST.csv writes the phase of each frame, for track --phase-lock "
-         "LIST.csv"});
+         "track and match take the phase of each frame from the plate with --phase-lock found"});
 }
 
 void survey_edges(CellSurvey& s, const SurveyOptions& options, const ProgressOf& progress) {

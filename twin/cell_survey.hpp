@@ -19,6 +19,9 @@
 
 namespace twincell::twin {
 
+/// NotMeasured::what where the period of the plate is no whole number of frames.
+inline constexpr const char* kFramesPerCycle = "the number of frames per cycle";
+
 /// A quantity that the stack does not give.
 struct NotMeasured {
   std::string what;    ///< "the plate's motion"

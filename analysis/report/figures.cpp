@@ -470,7 +470,7 @@ Figure thresholds_figure(const std::vector<Run>& runs) {
            .plot = {},
            .data = {},
            .svg = {}};
-  static constexpr double kFloor = 1e-4;  // the logarithmic axes cannot show zero
+  static constexpr double kFloor = 1e-5;  // the logarithmic axes cannot show zero
   const Range x = gamma_range(runs);
   f.plot = fmt::format(
       "set multiplot layout 2,1\nset logscale y\nset format y '10^{{%T}}'\nset xrange [{}:{}]\nset xlabel 'Γ "

@@ -178,14 +178,17 @@
       for (const side of ['experiment', 'simulation']) {
         const of = runs.map((r, i) => i).filter(i => runs[i].side === side && present(runs[i].results[name]))
           .sort((a, b) => runs[a].gamma - runs[b].gamma);
-        const bars = of.map(i => interval(runs[i].results[name]));
+        const bars = of.map(i => interval(runs[i].results[name])), value = k => runs[of[k]].results[name].value;
+        const drawn = v => Math.max(1e-5, v);  // a logarithmic axis cannot show zero
         const starts = new Set(of.map(i => runs[i].start));
         for (const start of starts) {
           const some = of.map((i, k) => k).filter(k => runs[of[k]].start === start);
-          traces.push({x: some.map(k => runs[of[k]].gamma), y: some.map(k => Math.max(1e-4, runs[of[k]].results[name].value)), customdata: some.map(k => of[k]),
-            mode: 'lines+markers', name: starts.size > 1 ? `${side}, ${plain(start)}` : side, text: some.map(k => plain(runs[of[k]].name)),
-            hovertemplate: `${side}, %{text}<br>Γ = %{x:.4g}, ${name} = %{y:.4g} σ<extra></extra>`,
-            error_y: {type: 'data', symmetric: false, array: some.map(k => bars[k][1]), arrayminus: some.map(k => bars[k][0]), width: 5, thickness: 1.2},
+          traces.push({x: some.map(k => runs[of[k]].gamma), y: some.map(k => drawn(value(k))), customdata: some.map(k => of[k]),
+            mode: 'lines+markers', name: starts.size > 1 ? `${side}, ${plain(start)}` : side,
+            text: some.map(k => `${side}, ${plain(runs[of[k]].name)}<br>Γ = ${+runs[of[k]].gamma.toPrecision(4)}, ${name} = ${+value(k).toPrecision(4)} σ`),
+            hovertemplate: '%{text}<extra></extra>',
+            error_y: {type: 'data', symmetric: false, width: 5, thickness: 1.2,
+              array: some.map(k => drawn(value(k) + bars[k][1]) - drawn(value(k))), arrayminus: some.map(k => drawn(value(k)) - drawn(value(k) - bars[k][0]))},
             line: {color: sideColour[side], width: 1.2, dash: side === 'experiment' ? 'dash' : 'solid'},
             marker: {size: side === 'experiment' ? 10 : 7, symbol: side === 'experiment' ? 'circle-open' : 'circle', line: {width: 2}, color: sideColour[side]}});
         }
@@ -276,9 +279,14 @@
     return some.length > 1 ? some : all;
   }
 
+  // The frame that is nearest in its cycle, and of these the nearest in time.
   function nearest(run, when) {
+    const off = m => { const cycles = Math.abs(at(m) - when); return Math.abs(cycles - Math.round(cycles)); };
     let best = 0;
-    run.moments.forEach((m, k) => { if (Math.abs(at(m) - when) < Math.abs(at(run.moments[best]) - when) - 1e-9) best = k; });
+    run.moments.forEach((m, k) => {
+      const closer = off(m) - off(run.moments[best]);
+      if (closer < -1e-9 || (closer < 1e-9 && Math.abs(at(m) - when) < Math.abs(at(run.moments[best]) - when) - 1e-9)) best = k;
+    });
     return best;
   }
 

@@ -24,9 +24,9 @@ bool is_of_the_bed(std::string_view key) {
          });
 }
 
-}  // namespace
-
-std::map<std::string, std::string> bed_keys(const std::string& provenance_json) {
+/// The keys of the scene of a provenance for which `wanted` is true.
+template <class Wanted>
+std::map<std::string, std::string> keys_of(const std::string& provenance_json, Wanted wanted) {
   const auto provenance = nlohmann::json::parse(provenance_json, nullptr, false);
   if (!provenance.is_object()) return {};
   const auto config = provenance.find("config");
@@ -42,7 +42,7 @@ std::map<std::string, std::string> bed_keys(const std::string& provenance_json) 
       key.clear();
     } else if (equals != std::string::npos && line.find_first_of("[{'\" ") >= equals) {
       key = table + line.substr(0, equals);
-      if (is_of_the_bed(key)) all[key] = line.substr(equals + 3);
+      if (wanted(key)) all[key] = line.substr(equals + 3);
     } else if (const auto begun = all.find(key); begun != all.end()) {
       begun->second += line;
     }
@@ -55,6 +55,21 @@ std::map<std::string, std::string> bed_keys(const std::string& provenance_json) 
       value = fmt::format("{}", number);
   }
   return all;
+}
+
+}  // namespace
+
+std::map<std::string, std::string> bed_keys(const std::string& provenance_json) {
+  return keys_of(provenance_json, is_of_the_bed);
+}
+
+std::map<std::string, std::string> motion_keys(const std::string& provenance_json) {
+  constexpr std::array<std::string_view, 5> kRecording = {"time.cycles", "time.discard", "time.phases",
+                                                          "time.contacts", "time.springs"};
+  auto all = keys_of(provenance_json, [&](std::string_view key) {
+    return std::ranges::find(kRecording, key) == kRecording.end();
+  });
+  return all.contains("start.from") ? std::map<std::string, std::string>() : all;
 }
 
 }  // namespace twincell::analysis

@@ -317,26 +317,34 @@ std::string real_differences_text(const std::vector<Difference>& differences,
   const Conditions conditions(matches);
   std::string rows;
   std::size_t others = 0, without_error = 0;
-  bool filmed = true, other_starts = true;
+  std::size_t real = 0, not_filmed = 0;
+  bool other_starts = true;
   for (const Difference& d : differences) {
     if (!d.is_real()) {
       ++(d.in_errors() ? others : without_error);
       continue;
     }
+    ++real;
     const auto share = d.camera_share();
     const double errors = std::abs(d.in_errors().value_or(0));
     rows += fmt::format("{}  {:<24} {:>11.4g} {:>11.4g} {:>11.3g} {:>9}{}\n", conditions.of(matches[d.match]),
                         d.quantity, d.experiment.value, d.simulation.value, d.difference(),
                         errors < 1e5 ? fmt::format("{:.1f}", errors) : fmt::format("{:.1e}", errors),
                         share ? fmt::format("  camera {:.0f} %", 100 * std::min(1.0, *share)) : "");
-    filmed = filmed && d.camera.has_value();
+    not_filmed += d.camera ? 0 : 1;
     other_starts = other_starts && d.defects.has_value();
   }
   if (!rows.empty()) {
     rows = fmt::format("{}  {:<24}{:>12}{:>12}{:>12}{:>10}\n", conditions.head(), "real difference",
                        "experiment", "simulation", "difference", "errors") +
            rows;
-    if (!filmed) rows += "nothing was filmed, so that camera and tracking may cause a difference\n";
+    if (not_filmed == real)
+      rows += "nothing was filmed, so that camera and tracking may cause a difference\n";
+    else if (not_filmed > 0)
+      rows += fmt::format(
+          "{} of these numbers {} not known in the filmed simulation, so that camera and tracking may cause "
+          "the difference\n",
+          not_filmed, not_filmed == 1 ? "is" : "are");
     if (!other_starts) rows += "one start alone does not show whether defects cause a difference\n";
   }
   if (without_error > 0)

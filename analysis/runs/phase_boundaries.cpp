@@ -18,18 +18,17 @@ void bracket(const Gammas& gammas, PhaseBoundary& boundary) {
   for (const double g : gammas.without) boundary.below = std::max(boundary.below.value_or(g), g);
   for (const double g : gammas.with) boundary.above = std::min(boundary.above.value_or(g), g);
   if (!boundary.below || !boundary.above || *boundary.above > *boundary.below) return;
-  // Seeds differ: the bracket extends to the next runs on either side of the overlap.
+  // Seeds differ: the bracket extends to the next runs on either side of the overlap, and is open without
+  // one.
   boundary.overlap = true;
   const double first = *boundary.above, last = *boundary.below;
-  boundary.below = first;
-  boundary.above = last;
   std::optional<double> lower, upper;
   for (const double g : gammas.without)
     if (g < first) lower = std::max(lower.value_or(g), g);
   for (const double g : gammas.with)
     if (g > last) upper = std::min(upper.value_or(g), g);
-  if (lower) boundary.below = lower;
-  if (upper) boundary.above = upper;
+  boundary.below = lower;
+  boundary.above = upper;
 }
 
 }  // namespace
@@ -87,7 +86,8 @@ std::string boundary_text(const PhaseBoundary& boundary) {
   if (boundary.fitted && !boundary.half_width())
     return fmt::format("{:.3g}, interval open", *boundary.fitted);
   if (boundary.gamma()) return fmt::format("{:.3g} ± {:.2g}", *boundary.gamma(), *boundary.half_width());
-  if (!boundary.below && !boundary.above) return "not found";
+  if (!boundary.below && !boundary.above)
+    return boundary.overlap ? "undetermined (seeds differ)" : "not found";
   return boundary.below ? fmt::format("above {:.3g}", *boundary.below)
                         : fmt::format("below {:.3g}", *boundary.above);
 }

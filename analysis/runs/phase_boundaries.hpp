@@ -18,10 +18,10 @@ struct PhaseBoundary {
   double n_l = 0;                       ///< N_l sigma, mean of the runs
   std::size_t n_runs = 0;               ///< runs of known phase
   /// Lower end of the bracket: the largest Gamma of the runs at which the phase is still absent, and below
-  /// which no run has it. Absent if every run has the phase.
+  /// which no run has it. Absent if every run has the phase, or seeds differ at the lowest of them.
   std::optional<double> below = {};
   /// Upper end of the bracket: the smallest Gamma of the runs at which the phase is present, and above which
-  /// every run has it. Absent if no run has the phase.
+  /// every run has it. Absent if no run has the phase, or seeds differ at the highest of them.
   std::optional<double> above = {};
   bool overlap = false;  ///< inside the bracket, runs with the phase are below runs without: seeds differ
   bool sweep = false;    ///< from a sweep: `below` and `above` are the ends of its interval

@@ -448,9 +448,10 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
                       fmt::format("cannot be pooled with {}: {}", a.name(), why));
   };
   std::vector<RunEnds> ends;
-  std::vector<std::map<std::string, std::string>> keys;
+  std::vector<std::map<std::string, std::string>> keys, motions;
   for (const TrajectorySource* t : trajectories) {
     ends.emplace_back(*t);
+    motions.push_back(motion_keys(t->info().provenance_json));
     keys.push_back(bed_keys(t->info().provenance_json));
   }
   for (std::size_t i = 1; i < trajectories.size(); ++i) {
@@ -500,6 +501,11 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
         refuse(*trajectories[k], b,
                "both contain the same run, bead for bead; another seed or repeat is needed to measure the "
                "scatter");
+      else if (q.source == "simulation" && trajectories[k]->info().source == "simulation" &&
+               !motions[i].empty() && motions[k] == motions[i])
+        refuse(*trajectories[k], b,
+               "both contain the same run, of which they recorded different parts; another seed is needed to "
+               "measure the scatter");
   }
 }
 

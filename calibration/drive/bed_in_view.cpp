@@ -83,7 +83,8 @@ PlateOfBed plate_of_bed(const BeadFrames& beads, double diameter, double gamma) 
   plate.phases = imaging::estimate_phases(motion, {.frames_per_cycle = 0, .gamma = gamma});
   const int n = plate.phases.frames_per_cycle;
   if (plate.phases.dropped > 0 || plate.phases.doubled > 0)
-    refuse(fmt::format("shows {} missing and {} doubled frames", plate.phases.dropped, plate.phases.doubled));
+    refuse(fmt::format("does not move as a bed on this drive, or {} frames are missing and {} taken twice",
+                       plate.phases.dropped, plate.phases.doubled));
 
   const auto angle = [&](std::size_t f) {
     return 2 * std::numbers::pi * plate.phases.at(static_cast<std::int64_t>(f)).phase / n;

@@ -103,7 +103,8 @@ std::string complete_drive(imaging::CellDescription& cell, bool phases,
       throw ConfigError(
           where("camera.frames_per_cycle"),
           fmt::format("is missing, and the plate's period of {:.5g} frames is not a whole number "
-                      "over the stack, so the frames have no fixed phases.",
+                      "over the stack, so the frames have no fixed phases; --phase-lock found takes "
+                      "them from the plate.",
                       lock.period));
     cell.phase_lock = {lock.frames_per_cycle, lock.first_phase, lock.phase_offset};
     said += fmt::format("{} {} frames per cycle, the first at phase {}", said.back() == ':' ? "" : ",",

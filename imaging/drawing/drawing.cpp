@@ -7,6 +7,8 @@
 #include <deque>
 #include <numeric>
 #include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
 
 #include "core/error.hpp"
 #include "imaging/camera/movie.hpp"
@@ -305,10 +307,20 @@ class Painter {
     const int px = static_cast<int>(std::lround(length / unit * view_.pixels_per_sigma()));
     const int y = cell.y + cell.height + 20;
     cv::line(picture, {cell.x, y}, {cell.x + px, y}, kInk, 3);
-    std::string text = fmt::format("{:g} {}", length, mm ? "mm" : "sigma");
-    if (job_.vectors) text += fmt::format("   longest arrow {:.3g} sigma/t0", extremes_.speed);
-    if (job_.contacts) text += fmt::format("   widest line {:.3g} m g", extremes_.force);
+    std::vector<std::string> parts = {fmt::format("{:g} {}", length, mm ? "mm" : "sigma")};
+    if (job_.vectors) parts.push_back(fmt::format("longest arrow {:.3g} sigma/t0", extremes_.speed));
+    if (job_.contacts) parts.push_back(fmt::format("widest line {:.3g} m g", extremes_.force));
+    // In a narrow picture the last parts stand beside the bar.
+    std::string text = parts.front(), beside;
+    for (std::size_t k = 1; k < parts.size(); ++k) {
+      const std::string longer = text + "   " + parts[k];
+      if (beside.empty() && text_width(longer) < picture.cols - cell.x)
+        text = longer;
+      else
+        beside += (beside.empty() ? "" : "   ") + parts[k];
+    }
     draw_label(picture, text, {cell.x, y + 22}, kInk);
+    if (!beside.empty()) draw_label(picture, beside, {cell.x + px + 12, y + 4}, kInk);
   }
 
   void draw_colour_bar(cv::Mat3b& picture) const {

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "core/constants.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
 #include "imaging/phase/plate_phases.hpp"
@@ -83,11 +85,12 @@ bool by_plate(PhaseTable& table, const PhaseLock& lock, std::span<const double> 
     add_warning(out_of_lock_in_words(table));
   }
   constexpr double kManyMisread = 0.03;  // of the frames
-  if (static_cast<double>(reading.misread) > kManyMisread * static_cast<double>(plate.size()))
-    add_warning(
-        fmt::format("the plate is off its sine in {} of {} frames{}: its edge is misread there, or the "
-                    "drive is not steady (calibrate plate names these frames)",
-                    reading.misread, plate.size(), reading.out_of_lock.empty() ? "" : " that are kept"));
+  if (reading.far_off > 0 ||
+      static_cast<double>(reading.misread) > kManyMisread * static_cast<double>(plate.size()))
+    add_warning(fmt::format(
+        "the plate is off its sine in {} of {} frames{}: its edge is misread there, a frame is not "
+        "where it belongs, or the drive is not steady (calibrate plate names these frames)",
+        reading.misread, plate.size(), reading.out_of_lock.empty() ? "" : " that are kept"));
   // Phase of the first frame.
   const double cycle = table.frames_per_cycle;
   const double off = std::remainder(fit.phase * cycle - table.first_phase - lock.offset, cycle);
@@ -164,6 +167,55 @@ PhaseTable check_lock(const PhaseLock& lock, const LockEvidence& evidence) {
     return table;
   table.not_checked = why_not;
   return table;
+}
+
+void check_list_by_plate(PhaseTable& table, std::span<const double> plate_px, bool sine) {
+  constexpr int kTerms = 5;  // 1, sin, cos, and of the second harmonic
+  constexpr double kLeastShare = 0.5, kFarthest = 0.75, kSamePeriod = 0.01;
+  if (!table.locked()) return;
+  const std::optional<PhaseTable> alone = phases_from_plate(plate_px, 0);
+  if (!alone) return;
+  std::vector<std::pair<double, double>> seen;  // cycles, height
+  for (std::size_t f = 0; f < plate_px.size(); ++f)
+    if (const auto cycles = table.cycles_at(static_cast<std::int64_t>(f));
+        cycles && alone->cycles_at(static_cast<std::int64_t>(f)) && std::isfinite(plate_px[f]))
+      seen.emplace_back(*cycles, plate_px[f]);
+  if (seen.size() < 3 * kTerms) return;
+  const auto n = static_cast<Eigen::Index>(seen.size());
+  Eigen::MatrixXd terms(n, kTerms);
+  Eigen::VectorXd heights(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const auto& [cycles, height] = seen[static_cast<std::size_t>(k)];
+    const double turn = kTurn * (cycles - std::floor(cycles));
+    terms.row(k) << 1, std::sin(turn), std::cos(turn), std::sin(2 * turn), std::cos(2 * turn);
+    heights[k] = height;
+  }
+  const Eigen::VectorXd fit = terms.completeOrthogonalDecomposition().solve(heights);
+  const double all = (heights.array() - heights.mean()).square().sum(),
+               left = (heights - terms * fit).squaredNorm();
+  const auto refuse_list = [](const std::string& why) {
+    throw ConfigError(
+        Where{.file = {}, .key = "--phase-lock"},
+        fmt::format("{}; correct the list or the frequency of the drive (--drive-hz), or keep them with "
+                    "--trust-stated-drive.",
+                    why));
+  };
+  if (left > (1 - kLeastShare) * all) {
+    const double of_list = table.period_frames.value_or(table.frames_per_cycle),
+                 of_plate = alone->period_frames.value_or(alone->frames_per_cycle);
+    if (std::abs(of_list - of_plate) > kSamePeriod * of_plate)
+      refuse_list(fmt::format(
+          "by the list there are {:.4g} frames per cycle, but the plate in the frames repeats itself "
+          "after {:.4g} frames",
+          of_list, of_plate));
+    return;
+  }
+  const double ahead = std::atan2(fit[2], fit[1]) / kTurn;  // cycles
+  if (sine && std::abs(ahead) * table.frames_per_cycle > kFarthest)
+    refuse_list(
+        fmt::format("the plate in the frames is {:.3g} of a cycle {} than the phases of the list state",
+                    std::abs(ahead), ahead > 0 ? "later in its cycle" : "earlier in its cycle"));
+  table.checked_by = "the plate";
 }
 
 void check_lock_by_bed(PhaseTable& table, const BedMotion& motion) {

@@ -40,6 +40,14 @@ PhaseTable check_lock(const PhaseLock& lock, const LockEvidence& evidence);
 /// \throws ConfigError as check_lock
 void check_lock_by_bed(PhaseTable& table, const BedMotion& motion);
 
+/// Checks the phases of a list against the plate. It can tell if it is seen in 60 % of the frames and follows
+/// a sine of any period (phases_from_plate). Then the first two harmonics of the listed phases must explain
+/// half of the variance of its height, and the fundamental must be within 0.75 frame intervals of a sine that
+/// begins at phase 0. \param plate_px [frames] LockEvidence::plate_px \param sine whether the drive is known
+/// to have that phase; a recorded one need not \throws ConfigError naming the frames per cycle of list and
+/// plate, or the difference of their phases
+void check_list_by_plate(PhaseTable& table, std::span<const double> plate_px, bool sine);
+
 /// The frames before which frames are missing, with their number, and the doubled frames, as text: "1 before
 /// frame 30, 2 before frame 61; frame 80 is taken twice". At most eight are named.
 std::string slips_in_words(std::span<const FramePhase> frames);

@@ -101,8 +101,14 @@ PlateReading read(std::span<const double> plate, int frames_per_cycle, const Fre
     out.out_of_lock = stretches_out_of_lock(misses, frames_per_cycle);
     out.misread = static_cast<std::size_t>(
         std::count_if(misses.begin(), misses.end(), [](double miss) { return miss > 1; }));
+    constexpr double kFar = 3;
+    out.far_off = static_cast<std::size_t>(
+        std::count_if(misses.begin(), misses.end(), [](double miss) { return miss > kFar; }));
     for (const FrameStretch& s : out.out_of_lock)
-      for (std::size_t f = s.first; f <= s.last; ++f) out.misread -= misses[f] > 1 ? 1 : 0;
+      for (std::size_t f = s.first; f <= s.last; ++f) {
+        out.misread -= misses[f] > 1 ? 1 : 0;
+        out.far_off -= misses[f] > kFar ? 1 : 0;
+      }
     out.slips = std::move(fit);
   } else if (const std::string changes = change_of(plate, frames_per_cycle); !changes.empty())
     out.changes = changes;

@@ -20,6 +20,7 @@ struct PlateReading {
   std::optional<FreeSine> other;          ///< a sine of another period that explains the heights better
   std::vector<FrameStretch> out_of_lock;  ///< where the plate does not follow `slips`
   std::size_t misread = 0;                ///< further frames in which it is off `slips`
+  std::size_t far_off = 0;                ///< of these, the frames in which it is three times as far off
   std::string changes;                    ///< how the motion changes during the film, if it does
   std::string why_not;                    ///< why the plate cannot tell
 

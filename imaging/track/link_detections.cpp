@@ -118,6 +118,10 @@ PhaseTable determine_phases(const DetectionStore& located, const LinkOptions& li
                      "has " + std::to_string(table.frames.size()) + " lines for " +
                          std::to_string(located.size()) +
                          " frames; every frame of the stack needs its line.");
+  if (!source.trusted) {
+    const auto drive = cell.drive();
+    check_list_by_plate(table, evidence.plate_px, !drive || !drive->recorded);
+  }
   return table;
 }
 

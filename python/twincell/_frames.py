@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import re
 import threading
 from collections.abc import Sequence
 
@@ -10,12 +11,25 @@ import numpy as np
 from . import _core
 
 
+class Frame(np.ndarray):
+    """A picture (rows, columns) that knows its number in the stack, `frame_no`."""
+
+    frame_no: int | None = None
+
+    def __array_finalize__(self, of) -> None:
+        self.frame_no = getattr(of, "frame_no", None)
+
+    def __array_wrap__(self, result, context=None, return_scalar=False):
+        # A number, such as the mean of the picture, is no picture.
+        return result[()] if result.ndim == 0 else super().__array_wrap__(result, context)
+
+
 class Frames(Sequence):
     """The frames of a stack, read when they are used: len, index, slice, iterate.
 
     A frame is a read-only array (rows, columns) of uint8, uint16 or float32 with the grey values of the camera; row 0
-    is the top. A slice is a sequence of the same kind. Frames in order are read once; a step back opens the stack
-    again.
+    is the top; `frame_no` is its number in the stack. A slice is a sequence of the same kind, whose frames keep their
+    numbers. Frames in order are read once; a step back opens the stack again.
     """
 
     def __init__(self, path: str | os.PathLike, _range: range | None = None):
@@ -35,9 +49,21 @@ class Frames(Sequence):
         """What the stack states: format, bits, frame rate, exposure, notes."""
         return self._source.info
 
-    @property
-    def _whole_stack(self) -> str | None:
-        return self.path if self._range == range(self._source.announced) else None
+    def _part_of_stack(self, frames: str) -> tuple[str, str] | None:
+        """The name of the stack, and which of its frames these are as A:B:STEP; None for a reversed slice.
+
+        frames: A:B or A:B:STEP of this sequence; empty: all.
+        """
+        part = self._range
+        if frames:
+            if not re.fullmatch(r"\d*:\d*(:0*[1-9]\d*)?", frames):
+                return self.path, frames  # refused there with its sentence
+            part = part[slice(*(int(n) if n else None for n in frames.split(":")))]
+        if part == range(self._source.announced):
+            return self.path, ""
+        if part.step < 1 or len(part) == 0:
+            return None
+        return self.path, f"{part.start}:{part[-1] + 1}:{part.step}"
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -60,7 +86,8 @@ class Frames(Sequence):
                 frame = self._source.read()
                 if frame is None:
                     raise IndexError(f"{self.path}: the stack has {self._read} frames, not {number + 1}.")
-                self._last = frame
+                self._last = frame.view(Frame)
+                self._last.frame_no = self._read
                 self._read += 1
             return self._last
 

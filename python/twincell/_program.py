@@ -60,8 +60,8 @@ def _in_file(value, folder):
         return str(path)
     if not isinstance(value, _core.Trajectory):
         return value
-    if value.name != "memory" and Path(value.name).is_file():
-        return value.name
+    if value._file is not None:  # else the file was replaced since it was opened
+        return str(value._file)
     path = Path(folder) / f"memory-{len(list(Path(folder).iterdir()))}.h5"
     value.write(path)
     return str(path)
@@ -69,7 +69,8 @@ def _in_file(value, folder):
 
 def _raise(code, sentence):
     made = _CLASSES.get(code, _core.Error)
-    error = made(sentence)
+    # Options have their Python names.
+    error = made(re.sub(r"(?<![\w-])--([a-z][a-z0-9-]*)", lambda found: found[1].replace("-", "_"), sentence))
     error.exit_code = code
     raise error
 

@@ -1,6 +1,8 @@
 """Trajectories as tables of pandas and universes of MDAnalysis."""
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 
 from . import _core
@@ -47,7 +49,7 @@ def _to_mdanalysis(self):
     """The trajectory as an MDAnalysis Universe in memory, one atom per slot, lengths in bead diameters.
 
     Positions are copied, because MDAnalysis keeps 32-bit numbers. The type of a tracer is "tracer", of any other bead
-    "bead"; the time step is that of the first two frames in t0.
+    "bead"; times are in t0, from that of the first frame on, with the time step of the first two.
     """
     import MDAnalysis as mda
     from MDAnalysis.coordinates.memory import MemoryReader
@@ -63,6 +65,11 @@ def _to_mdanalysis(self):
     size = np.subtract(self.box.upper, self.box.lower)
     box = np.array([*size, 90, 90, 90], dtype=np.float32)
     options = {"dt": float(time[1] - time[0])} if len(time) > 1 else {}
+    if len(time) > 0:
+        options["time_offset"] = float(time[0])
+    if len(time) > 2 and np.ptp(np.diff(time)) > 1e-6 * options["dt"]:
+        warnings.warn("MDAnalysis has one time step for all frames; the times of this trajectory are not evenly spaced and "
+                      "are in its `time`.", stacklevel=2)
     velocities = np.asarray(self.velocities, dtype=np.float32) if self.velocities is not None else None
     universe.load_new(np.asarray(self.positions, dtype=np.float32), format=MemoryReader, order="fac",
                       dimensions=box, velocities=velocities, **options)

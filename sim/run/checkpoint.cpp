@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <type_traits>
@@ -279,6 +280,22 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
   return c;
 }
 
+namespace {
+
+/// Whether the file of the start is none of those that the run read. One that was removed is not needed any
+/// more, and the record of a drive has a key of its own.
+bool has_other_start(const Scene& scene, const std::string& provenance_json) {
+  const auto provenance = nlohmann::json::parse(provenance_json, nullptr, false);
+  std::error_code none;
+  if (!provenance.is_object() || !std::filesystem::is_regular_file(scene.from, none)) return false;
+  const auto inputs = provenance.value("inputs", nlohmann::json::array());
+  const std::string now = sha256_of(scene.from);
+  return !inputs.empty() && std::none_of(inputs.begin(), inputs.end(),
+                                         [&](const auto& i) { return i.value("sha256", "") == now; });
+}
+
+}  // namespace
+
 void require_same_run(const Scene& scene, const Checkpoint& checkpoint,
                       const std::filesystem::path& checkpoint_name) {
   const std::string remedy = fmt::format("remove {} to start again.", checkpoint_name.string());
@@ -295,6 +312,9 @@ void require_same_run(const Scene& scene, const Checkpoint& checkpoint,
                                                       value(now, key), value(then, key), remedy));
   if (scene.resolved != checkpoint.scene)
     throw ConfigError({scene.file, 0, 0, ""}, "is not the scene of the run that is to be resumed; " + remedy);
+  if (has_other_start(scene, checkpoint.provenance))
+    throw ConfigError(scene.where("start.from"),
+                      fmt::format("{} has changed since the run began; {}", scene.from.string(), remedy));
   if (checkpoint.program != version_line())
     throw ConfigError(
         {checkpoint_name.string(), 0, 0, ""},

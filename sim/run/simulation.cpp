@@ -19,6 +19,18 @@ namespace twincell::sim {
 
 namespace {
 
+/// Contacts as files store them, so that an analysis in memory has the numbers of one of the file.
+std::vector<ContactForce> in_single_precision(std::vector<ContactForce> all) {
+  const auto stored = [](double v) { return static_cast<double>(static_cast<float>(v)); };
+  for (ContactForce& c : all) {
+    c.overlap = stored(c.overlap);
+    c.normal = c.normal.unaryExpr(stored);
+    c.normal_force = stored(c.normal_force);
+    c.tangential_force = c.tangential_force.unaryExpr(stored);
+  }
+  return all;
+}
+
 double top_of(const std::vector<Bead>& beads) {
   double top = 0;
   for (const Bead& b : beads) top = std::max(top, b.z + b.radius);
@@ -357,7 +369,8 @@ Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
       frame.rim_speed.push_back(system_.rim_speeds.size() == n ? system_.rim_speeds[i] : unknown);
     }
   }
-  if (scene_.contacts) frame.contact_forces = contact_forces(plan_, system_, solver_->contacts());
+  if (scene_.contacts)
+    frame.contact_forces = in_single_precision(contact_forces(plan_, system_, solver_->contacts()));
   const std::int64_t index = frame_at(system_.step);
   if (index > 0 && temperature_.steps == step_of(index) - step_of(index - 1)) {
     const auto steps = static_cast<double>(temperature_.steps);

@@ -62,6 +62,9 @@ std::vector<std::string> warnings_of(const Scene& s, const Plan& plan) {
   for (const std::string& doubt : warnings_of_record(s.drive)) warnings.push_back(doubt);
   warn_of_harmonics(s.drive, warnings);
   warn_of_missing_friction(plan, warnings);
+  if (s.contact.rolling != "none" && !plan.rotation)
+    warnings.emplace_back(
+        "beads do not turn without friction (contact.mu = 0), so that contact.rolling has no effect.");
   warn_of_steps(s, plan, warnings);
   return warnings;
 }

@@ -28,29 +28,6 @@ void require_count(const Scene& scene, std::size_t found, const std::string& sou
                                                               *scene.n_beads, source, found));
 }
 
-/// Refuses beads.mass and beads.radius if the file contains these numbers and most of them are others: the
-/// key would have no effect. The scene of the run that wrote the file passes. \param radii, masses the file
-/// contains them \param source words for the file
-void refuse_void_sizes(const Scene& scene, const std::vector<Bead>& beads, bool radii, bool masses,
-                       const std::string& source) {
-  constexpr double kSame = 1e-6;  // units are converted
-  const auto refuse_others = [&](const char* key, const char* numbers, double stated, auto differs) {
-    const auto others = std::ranges::count_if(beads, differs);
-    if (scene.source && scene.source->has(key) && 2 * others > std::ssize(beads))
-      throw ConfigError(scene.where(key),
-                        fmt::format("{} has no effect: {} contains the {} of its beads, and {} of {} differ; "
-                                    "remove the key.",
-                                    stated, source, numbers, others, beads.size()));
-  };
-  // With masses of their own, radius and mass of a bead do not state a material either.
-  if (radii && masses && scene.spread == SizeSpread::none)
-    refuse_others("beads.radius", "radii", scene.radius,
-                  [&](const Bead& b) { return std::abs(b.radius - scene.radius) > kSame * scene.radius; });
-  if (masses)
-    refuse_others("beads.mass", "masses", scene.mass,
-                  [&](const Bead& b) { return std::abs(b.mass - scene.mass_of(b.radius)) > kSame * b.mass; });
-}
-
 /// Checks a column of a file, which must contain positive numbers or be absent.
 void require_positive(const Scene& scene, const std::vector<double>& column, const char* name) {
   for (std::size_t i = 0; i < column.size(); ++i)
@@ -72,6 +49,31 @@ std::optional<Scene> scene_of_file(const Scene& scene, const TrajectoryInfo& inf
   } catch (const Error&) {
     return {};
   }
+}
+
+/// Refuses beads.mass and beads.radius if the file contains these numbers and most of them are others: the
+/// key would have no effect. The keys of the run that wrote the file pass.
+/// \param radii, masses the file contains them \param source words for the file
+/// \param written the scene of that run, if it is known
+void refuse_void_sizes(const Scene& scene, const std::vector<Bead>& beads, bool radii, bool masses,
+                       const std::string& source, const std::optional<Scene>& written = {}) {
+  if (written && written->radius == scene.radius && written->mass == scene.mass) return;
+  constexpr double kSame = 1e-6;  // units are converted
+  const auto refuse_others = [&](const char* key, const char* numbers, double stated, auto differs) {
+    const auto others = std::ranges::count_if(beads, differs);
+    if (scene.source && scene.source->has(key) && 2 * others > std::ssize(beads))
+      throw ConfigError(scene.where(key),
+                        fmt::format("{} has no effect: {} contains the {} of its beads, and {} of {} differ; "
+                                    "remove the key.",
+                                    stated, source, numbers, others, beads.size()));
+  };
+  // With masses of their own, radius and mass of a bead do not state a material either.
+  if (radii && masses && scene.spread == SizeSpread::none)
+    refuse_others("beads.radius", "radii", scene.radius,
+                  [&](const Bead& b) { return std::abs(b.radius - scene.radius) > kSame * scene.radius; });
+  if (masses)
+    refuse_others("beads.mass", "masses", scene.mass,
+                  [&](const Bead& b) { return std::abs(b.mass - scene.mass_of(b.radius)) > kSame * b.mass; });
 }
 
 /// Start in motion: continues from a frame without changes.
@@ -128,7 +130,8 @@ Start start_in_motion(const Scene& scene, const TrajectoryInfo& info, const Fram
   if (const std::string complaint = displaced_wall(scene, info, frame, *start.phase); !complaint.empty())
     refuse(complaint);
   require_count(scene, start.beads.size(), name);
-  refuse_void_sizes(scene, start.beads, !info.radius.empty(), !info.mass.empty(), name);
+  refuse_void_sizes(scene, start.beads, !info.radius.empty(), !info.mass.empty(), name,
+                    scene_of_file(scene, info));
   return start;
 }
 
@@ -206,7 +209,9 @@ Start from_trajectory(const Scene& scene, Progress& progress) {
   }
   const std::string name = fmt::format("frame {} of {}", scene.frame, scene.from.string());
   require_count(scene, start.beads.size(), name);
-  if (own_sizes) refuse_void_sizes(scene, start.beads, !info.radius.empty(), !info.mass.empty(), name);
+  if (own_sizes)
+    refuse_void_sizes(scene, start.beads, !info.radius.empty(), !info.mass.empty(), name,
+                      scene_of_file(scene, info));
   // Camera noise is a few hundredths of a diameter; an overlap beyond 0.2 means that the file belongs to
   // another cell.
   constexpr double kRefused = 0.2, kTolerated = 1e-4, kLeft = 0.05;

@@ -143,6 +143,24 @@ TEST_F(Checkpoints, ARecordedDriveGoesOnAndAChangedRecordIsRefused) {
   EXPECT_EQ(datasets_of(output_), whole);
 }
 
+TEST_F(Checkpoints, AChangedFileOfTheStartIsRefused) {
+  const auto put_beads = [&](int count) {
+    std::ofstream beads(folder_ / "beads.csv");
+    beads << "x,z\n";
+    for (int i = 0; i < count; ++i) beads << fmt::format("{},{}\n", 0.6 + i % 7, 0.6 + 1.1 * (i / 7));
+  };
+  put_beads(40);
+  std::ofstream(scene_)
+      << "preset = \"fortini-huang-2015\"\n[cell]\nwidth = 8.0\n[drive]\ngamma = 2.0\n[start]\n"
+         "kind = \"table\"\nfrom = \"beads.csv\"\n[time]\nsteps_per_contact = 10\ncycles = 30\n"
+         "discard = 1\n";
+  ASSERT_EQ(stopped_in_the_middle(SIGINT).code, 130);
+  put_beads(35);
+  expect_refusal({"--resume"}, kUsage, {"start.from", "beads.csv has changed since the run began"});
+  put_beads(40);
+  EXPECT_EQ(run_program(words({"--resume"})).code, kDone);
+}
+
 TEST_F(Checkpoints, WhatAnotherVersionWroteIsRefused) {
   ASSERT_EQ(stopped_in_the_middle(SIGINT).code, 130);
   {

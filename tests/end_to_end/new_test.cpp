@@ -326,6 +326,27 @@ TEST(New, PixelsThatAreNotSquareAreNoted) {
   }
 }
 
+// A period of 6 2/3 frames: the command that `new` names, and the refusal of `match` without it, lead on.
+TEST(New, APeriodThatIsNoWholeNumberOfFramesHasANextCommandThatWorks) {
+  const TemporaryFolder folder;
+  const fs::path stack = folder / "every-third", cell = folder / "CELL.toml";
+  fs::create_directory(stack);
+  for (int f = 0; f < 26; ++f) fs::copy_file(kDemo / "gamma-1.6" / frame_name(3 * f), stack / frame_name(f));
+  const Ran made = run_program({"new", stack, "-o", cell, "--sigma-mm", "2", "--drive-hz", "15"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_NE(made.out.find("next: twincell match"), std::string::npos) << made.out;
+  EXPECT_NE(made.out.find(" --phase-lock found -o twin/"), std::string::npos) << made.out;
+  const Ran refused = run_program({"match", stack, cell, "-o", folder / "no", "-q"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("--phase-lock found takes them from the plate"), std::string::npos)
+      << refused.err;
+  const Ran tracked =
+      run_program({"track", stack, "--cell", cell, "--phase-lock", "found", "-o", folder / "t.h5", "-q"});
+  EXPECT_EQ(tracked.code, 0) << tracked.err;
+  const Ran whole = run_program({"new", copy_of(folder, "gamma-1.6", 40), "-o", folder / "WHOLE.toml"});
+  EXPECT_EQ(whole.out.find("--phase-lock found -o"), std::string::npos) << whole.out;
+}
+
 TEST(New, AMissingStackIsAnError) {
   const TemporaryFolder folder;
   const Ran ran = run_program({"new", folder / "none", "-o", folder / "CELL.toml"});

@@ -159,7 +159,9 @@ TEST_F(Refusals, Fit) {
           {"fit @semicolons.csv --law line", kInput, {"semicolons", "decimal points"}},
           {"fit @commas.csv --law line", kInput, {"commas.csv:2", "4 fields"}},
           {"fit @bare.csv --law line", kInput, {"bare.csv:1", "must name the columns"}},
-          {"fit @twice.csv --law line", kInput, {"twice.csv:1", "occurs twice"}},
+          {"fit @twice.csv --law line",
+           kInput,
+           {"twice.csv:2", "x: the column occurs twice, with the values '1' and '2'"}},
           {"fit @nan.csv --law line", kInput, {"nan.csv", "y", "no number"}}});
 }
 
@@ -283,7 +285,14 @@ TEST_F(Refusals, NumbersInOptions) {
        {"track @mixed -o @new.h5 --cell-width nan", kUsage, {"--cell-width", "'nan'"}},
        {"track @mixed -o @new.h5 --drive-gamma nan", kUsage, {"--drive-gamma", "'nan'"}},
        {"track @mixed -o @new.h5 --truth @beads.csv --scored-rows 9 3", kUsage, {"--scored-rows", "9", "3"}},
+       {"track @mixed -o @new.h5 --scored-rows 3 9", kUsage, {"--scored-rows", "--truth"}},
+       {"locate @mixed -o @new.csv --scored-rows 3 9", kUsage, {"--scored-rows", "--truth"}},
        {"draw @t.h5 -o @new.html --fps 0", kUsage, {"--fps", "0.01"}},
+       {"export @s.toml --to lammps --units mm -o @new", kUsage, {"--units", "trajectory"}},
+       {"export @t.h5 --to xyz --seed 3 -o @new.xyz", kUsage, {"--seed", "scene"}},
+       {"analyze @t.h5 --seed 3", kUsage, {"--seed"}},
+       {"locate @mixed -o @mixed/new.png", kUsage, {"new.png", "is an input", "one of its frames"}},
+       {"locate @mixed -o @new.csv --candidates @mixed/new.TIF", kUsage, {"new.TIF", "is an input"}},
        {sim + "--threads -1", kUsage, {"--threads", "0 to 4096"}},
        {sim + "--threads 2.5", kUsage, {"--threads", "whole number"}},
        {sim + "--seed -1", kUsage, {"--seed", "'-1'", "whole number"}},

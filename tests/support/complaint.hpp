@@ -11,8 +11,8 @@
 namespace twincell {
 
 /// Expects `action` to throw an E whose message contains all of `wanted`.
-template <class E, class ContactLoad, class... Words>
-void expect_refusal(ContactLoad action, const Words&... wanted) {
+template <class E, class Action, class... Words>
+void expect_refusal(Action action, const Words&... wanted) {
   try {
     action();
     ADD_FAILURE() << "accepted, though it should say: " << (std::string() + ... + std::string(wanted));

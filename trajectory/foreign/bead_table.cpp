@@ -65,7 +65,10 @@ class TableReader final : public PictureBeadsReader {
   void place_columns(std::string_view header) {
     const auto fields = fields_of(header);
     const std::vector<std::string> names(fields.begin(), fields.end());
-    check_column_names(names, {.file = file().string(), .line = 1, .key = {}});
+    twin_ = twin_of_index(names);
+    index_name_ = names.front();
+    check_column_names({names.begin() + (twin_ ? 1 : 0), names.end()},
+                       {.file = file().string(), .line = 1, .key = {}});
     n_columns_ = names.size();
     const auto find = [&](const std::string& name) -> std::optional<std::size_t> {
       const auto found = std::find(names.begin(), names.end(), name);
@@ -116,6 +119,7 @@ class TableReader final : public PictureBeadsReader {
     const auto fields = fields_of(line);
     if (fields.size() != n_columns_)
       fail_at(number, fmt::format("{} fields are needed, {} were found.", n_columns_, fields.size()));
+    require_same_index(fields, twin_, index_name_, {.file = file().string(), .line = number, .key = {}});
     const auto real = [&](const char* quantity, double absent, bool may_be_nan = false) {
       const auto at = column(quantity);
       if (!at) return absent;
@@ -167,6 +171,8 @@ class TableReader final : public PictureBeadsReader {
   std::string text_;
   std::array<std::optional<std::size_t>, kQuantities.size()> at_{};
   std::size_t n_columns_ = 0;
+  std::optional<std::size_t> twin_;  ///< of a column that pandas wrote twice
+  std::string index_name_;
 };
 
 /// The first line of a table with these columns.

@@ -66,6 +66,7 @@ class XyzReader final : public SnapshotReader {
     if (!has_box_) enclose(s, dimension_);
     return true;
   }
+  [[nodiscard]] std::string length_unit() const override { return length_unit_; }
   [[nodiscard]] const SnapshotColumns& columns() const override { return has_; }
   [[nodiscard]] std::string assumption() const override {
     return states_no_pbc_
@@ -97,6 +98,7 @@ class XyzReader final : public SnapshotReader {
     if (const std::string* time = value({"Time", "time"})) s.time = number(*time);
     if (const std::string* step = value({"Timestep", "timestep", "Step", "step"})) s.step = whole(*step);
     read_box(s, value({"Lattice"}), value({"Origin", "origin"}), value({"pbc"}));
+    if (const std::string* unit = value({"length_unit"})) length_unit_ = *unit;
     const std::string* creator = value({"creator"});
     for (std::size_t k = 0; k < 3; ++k)  // export writes how far beads have moved
       has_.wrapped[k] = s.periodic[k] && !(creator && *creator == "twincell");
@@ -116,7 +118,10 @@ class XyzReader final : public SnapshotReader {
       else if (entry != 0)
         fail("the box is not a cuboid along the axes.");
     }
-    if (!(s.upper.minCoeff() > 0)) fail("the box is empty: an edge of Lattice is not positive.");
+    // A planar system may have no third vector.
+    if (!(s.upper.head<2>().minCoeff() > 0 && s.upper.z() >= 0))
+      fail("the box is empty: an edge of Lattice is not positive.");
+    const bool planar = s.upper.z() == 0;
     if (origin) {
       split_words(*origin, words_);
       if (words_.size() != 3) fail("Origin needs three numbers.");
@@ -124,7 +129,7 @@ class XyzReader final : public SnapshotReader {
     }
     s.upper += s.lower;
     if (!pbc) {
-      s.periodic = {true, true, true};
+      s.periodic = {true, true, !planar};
       states_no_pbc_ = true;
       return;
     }
@@ -133,7 +138,7 @@ class XyzReader final : public SnapshotReader {
     for (std::size_t k = 0; k < 3; ++k) {
       if (words_[k] != "T" && words_[k] != "F")
         fail(fmt::format("pbc has '{}'; T or F is needed.", words_[k]));
-      s.periodic[k] = words_[k] == "T";
+      s.periodic[k] = words_[k] == "T" && !(k == 2 && planar);
     }
   }
 
@@ -210,6 +215,7 @@ class XyzReader final : public SnapshotReader {
   const Property *position_ = nullptr, *id_ = nullptr, *radius_ = nullptr, *mass_ = nullptr, *type_ = nullptr,
                  *velocity_ = nullptr, *spin_ = nullptr;
   SnapshotColumns has_;
+  std::string length_unit_;
   bool has_box_ = false, states_no_pbc_ = false;
   std::int64_t n_beads_ = 0;
   std::int64_t n_frames_ = 0;

@@ -68,7 +68,7 @@ struct ForeignTrajectory::Impl {
   double spacing = 0;                        ///< of the beads of the first frame, sigma
   std::size_t beyond = 0;                    ///< beads of the first frame beside the cell
   PositionExtent extent;                     ///< of all beads and frames, axes and unit of Snapshot
-  std::string assumption;
+  std::string assumption, length_unit;
 
   /// Converts a vector from the axes of Snapshot to those of Box. In 2D, y of the snapshot is our z, and -z
   /// is our y.
@@ -201,7 +201,9 @@ struct ForeignTrajectory::Impl {
             const double x = (a.position.x() - origin.x()) / o.sigma;
             return x < 0 || x > info.box.upper.x();
           }));
-    if (o.dimension == 2) info.box.upper.y() = (first.upper.z() - first.lower.z()) / o.sigma;
+    // A file without a box along z states no gap of the glass plates.
+    if (const double gap = first.upper.z() - first.lower.z(); o.dimension == 2)
+      info.box.upper.y() = gap > 0 ? gap / o.sigma : 1;
     if (!columns.radius) info.radius.clear();
     if (!columns.mass || !o.bead_mass) info.mass.clear();
     if (!tracer_type(columns)) info.tracer.clear();
@@ -337,6 +339,7 @@ ForeignTrajectory::ForeignTrajectory(const std::filesystem::path& path, const Fo
   }
   d.info.columns.identity = fewest < d.ids.size();
   d.assumption = reader.assumption();
+  d.length_unit = reader.length_unit();
   constexpr double kSameSize = 0.1;  // sizes that a tracker measures vary from frame to frame
   if (reader.columns().radius && std::ranges::any_of(seen, [](const auto& bead) {
         return bead.second.most - bead.second.least > kSameSize * bead.second.radius;
@@ -392,6 +395,9 @@ const std::vector<std::int64_t>& ForeignTrajectory::ids() const {
   return impl_->ids;
 }
 
+std::string ForeignTrajectory::length_unit() const {
+  return impl_->length_unit;
+}
 std::string ForeignTrajectory::assumption() const {
   return impl_->assumption;
 }

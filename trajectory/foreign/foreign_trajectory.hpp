@@ -67,6 +67,8 @@ class ForeignTrajectory {
   [[nodiscard]] std::size_t n_beyond() const;
   /// The file's numbers of the beads, ascending: bead i of the trajectory is ids()[i] of the file.
   [[nodiscard]] const std::vector<std::int64_t>& ids() const;
+  /// The unit of length that the file states; otherwise empty.
+  [[nodiscard]] std::string length_unit() const;
   /// What was assumed of the file, in sentences; otherwise empty.
   [[nodiscard]] std::string assumption() const;
   /// Appends all frames to `sink` in order.

@@ -111,17 +111,31 @@ class DumpReader final : public SnapshotReader {
   [[nodiscard]] std::int64_t whole(std::string_view word) const { return whole_at(in_.number(), word); }
   [[nodiscard]] double number(std::string_view word) const { return number_at(in_.number(), word); }
 
+  /// Bounds of the box: `lo hi`; `lo hi tilt` after the words xy xz yz; or, after abc origin, an edge vector
+  /// and a component of the corner. The tilts must be 0, and the edges along the axes.
   void read_box(const std::string& flags, Snapshot& s) {
     split_words(flags, words_);
-    if (words_.size() != 3 && !words_.empty())
-      fail("the box is not a cuboid along the axes (triclinic boxes are not read).");
-    for (std::size_t k = 0; k < 3; ++k) s.periodic[k] = !words_.empty() && words_[k] == "pp";
+    std::size_t first_flag = 0, needed = 2;
+    if (words_.size() >= 3 && words_[0] == "xy" && words_[1] == "xz" && words_[2] == "yz")
+      first_flag = 3, needed = 3;
+    else if (words_.size() >= 2 && words_[0] == "abc" && words_[1] == "origin")
+      first_flag = 2, needed = 4;
+    const std::size_t flagged = words_.size() - first_flag;
+    if (flagged != 3 && flagged != 0)
+      fail(fmt::format("the words '{}' do not describe a box of LAMMPS.", flags.substr(0, 60)));
+    for (std::size_t k = 0; k < 3; ++k) s.periodic[k] = flagged == 3 && words_[first_flag + k] == "pp";
     for (int k = 0; k < 3; ++k) {
       need_line("the bounds of the box");
       split_words(line_, words_);
-      if (words_.size() != 2) fail(fmt::format("two bounds are needed, '{}' was found.", excerpt()));
-      s.lower[k] = number(words_[0]);
-      s.upper[k] = number(words_[1]);
+      if (words_.size() != needed)
+        fail(fmt::format("{} numbers are needed, '{}' was found.", needed, excerpt()));
+      const auto at = [&](std::size_t w) { return number(words_[w]); };
+      bool tilted = needed == 3 && at(2) != 0;
+      for (std::size_t w = 0; w < 3 && needed == 4; ++w)
+        tilted = tilted || (w != static_cast<std::size_t>(k) && at(w) != 0);
+      if (tilted) fail("the box is not a cuboid along the axes (tilted boxes are not read).");
+      s.lower[k] = at(needed == 4 ? 3 : 0);
+      s.upper[k] = needed == 4 ? s.lower[k] + at(static_cast<std::size_t>(k)) : at(1);
       if (!(s.lower[k] < s.upper[k]))
         fail(fmt::format("the box is empty: {:g} is not below {:g}.", s.lower[k], s.upper[k]));
     }

@@ -29,7 +29,6 @@ void enclose(Snapshot& s, int dimension) {
       s.lower[k] = std::min(s.lower[k], bead.position[k] - bead.radius);
       s.upper[k] = std::max(s.upper[k], bead.position[k] + bead.radius);
     }
-  if (dimension == 2) s.upper.z() = s.lower.z() + 1;
 }
 
 void SnapshotReader::fail_at(long line, const std::string& complaint) const {

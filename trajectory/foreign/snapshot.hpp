@@ -92,6 +92,8 @@ class SnapshotReader {
   [[nodiscard]] virtual const SnapshotColumns& columns() const = 0;
   /// What was assumed where the file is silent, as a sentence; otherwise empty.
   [[nodiscard]] virtual std::string assumption() const { return {}; }
+  /// The unit of length that the file states; otherwise empty.
+  [[nodiscard]] virtual std::string length_unit() const { return {}; }
   /// A vector of the file in the axes of Snapshot.
   [[nodiscard]] virtual Vec3 upright(const Vec3& v) const { return v; }
   /// Bytes of the file, and how many of them have been read.

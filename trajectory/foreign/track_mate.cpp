@@ -70,6 +70,8 @@ class TrackMateReader final : public PictureBeadsReader {
     sort_by_frame();
   }
 
+  [[nodiscard]] std::string length_unit() const override { return length_unit_; }
+
  private:
   [[nodiscard]] std::string_view needed(const pugi::xml_node& node, const char* name) const {
     const pugi::xml_attribute value = node.attribute(name);
@@ -93,13 +95,19 @@ class TrackMateReader final : public PictureBeadsReader {
     return spot;
   }
 
-  /// A list of tracks: <particle><detection t x y z/>...</particle>.
+  /// A list of tracks: <particle><detection t x y z/>...</particle>; TrackMate states the interval of frames.
   void read_list(const pugi::xml_node& list) {
     std::int64_t particle = 0;
+    length_unit_ = list.attribute("spaceUnits").value();
+    const bool timed = list.attribute("frameInterval");
+    const double interval = timed ? number(list, "frameInterval") : 0;
+    if (timed && !(interval > 0))
+      fail_at(xml_.line_of(list), fmt::format("frameInterval is {:g}; it must be above 0.", interval));
     for (const pugi::xml_node& track : list.children("particle")) {
       for (const pugi::xml_node& detection : track.children("detection")) {
         beads_.push_back(spot(detection, "t", {"x", "y", "z"}));
         beads_.back().bead.id = particle;
+        if (timed) beads_.back().time = static_cast<double>(beads_.back().frame) * interval;
       }
       ++particle;
     }
@@ -109,6 +117,7 @@ class TrackMateReader final : public PictureBeadsReader {
   void read_model(const pugi::xml_node& model) {
     std::unordered_map<std::int64_t, std::size_t> place;  // ID -> entry of beads_
     has_.radius = true;
+    length_unit_ = model.attribute("spatialunits").value();
     for (const pugi::xml_node& frame : model.child("AllSpots").children("SpotsInFrame"))
       for (const pugi::xml_node& node : frame.children("Spot")) {
         BeadOfFrame found = spot(node, "FRAME", {"POSITION_X", "POSITION_Y", "POSITION_Z"});
@@ -157,6 +166,7 @@ class TrackMateReader final : public PictureBeadsReader {
   }
 
   XmlText xml_;
+  std::string length_unit_;
 };
 
 constexpr const char* kTrackMateMark = "<!-- written by twincell -->";

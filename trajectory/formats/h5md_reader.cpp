@@ -113,6 +113,9 @@ void H5mdReader::Impl::open() {
                     path.string());
   read_parameters();
   require_ranges(info, path.string());
+  if (info.columns.phase && !foreign)
+    require_order(h5::read_dataset<std::int32_t>(file.get(), "observables/drive_phase/value"),
+                  h5::read_dataset<std::int64_t>(file.get(), "observables/cycle/value"), path.string());
 }
 
 void H5mdReader::Impl::open_columns(const std::string& group) {
@@ -446,6 +449,7 @@ void H5mdReader::read(std::size_t index, Frame& frame) const {
     }
     if (r.foreign) r.foreign->restore(index, frame);
     require_ranges(frame, index, r.info, r.path.string());
+    if (!r.foreign) require_filled_slots(frame, index, r.path.string());
   } catch (const RunError& e) {
     r.refuse(fmt::format("frame {}", index), e.what());
   }

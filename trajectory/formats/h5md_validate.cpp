@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
 #include "core/hdf5_self_contained.hpp"
 #include "trajectory/formats/h5md_file.hpp"
+#include "trajectory/ranges.hpp"
 
 namespace twincell {
 
@@ -185,6 +187,21 @@ void Checker::check_connectivity() {
     fault(element + "@particles_group", "the attribute is missing.");
 }
 
+/// How the plate of a simulated frame contradicts the drive; empty if it does not. A plate at rest is stored
+/// at 0.
+std::string plate_fault(const TrajectoryInfo& info, const Frame& frame) {
+  constexpr double kRounding = 1e-6;
+  if (info.source != "simulation" || !info.drive || info.drive->ramp || info.drive->recorded ||
+      frame.phase < 0 || info.phases_per_cycle <= 0 || std::isnan(frame.plate_height) ||
+      frame.plate_height == 0)
+    return {};
+  const double at = static_cast<double>(frame.phase) / info.phases_per_cycle;
+  const double driven = info.drive->displacement(at, frame.cycle);
+  if (std::abs(frame.plate_height - driven) <= kRounding * std::max(1.0, info.drive->amplitude)) return {};
+  return fmt::format("the plate is at {:g}, but the drive of the file puts it at {:g}.", frame.plate_height,
+                     driven);
+}
+
 }  // namespace
 
 std::vector<std::string> validate_h5md(const std::filesystem::path& path) {
@@ -206,22 +223,20 @@ std::vector<std::string> validate_h5md(const std::filesystem::path& path) {
     }
   }
   if (!faults.empty()) return faults;
-  // The structure is valid. Check the content: every frame is readable, and a slot has a finite position
-  // exactly if it is filled.
+  // The structure is valid. Check the content: every frame is readable and in the ranges that the reader
+  // requires.
   const H5mdReader reader(path);
   Frame frame;
   for (std::size_t f = 0; f < reader.n_frames(); ++f) {
     try {
       reader.read(f, frame);
+      require_filled_slots(frame, f, path.string());
     } catch (const InputError& e) {
       faults.emplace_back(e.what());
       return faults;
     }
-    for (std::size_t i = 0; i < frame.position.size(); ++i) {
-      if (frame.present(i) == frame.position[i].allFinite()) continue;
-      faults.push_back(fmt::format("frame {}, slot {}: {}", f, i,
-                                   frame.present(i) ? "a bead without a finite position."
-                                                    : "an empty slot with a position; it must be NaN."));
+    if (const std::string fault = plate_fault(reader.info(), frame); !fault.empty()) {
+      faults.push_back(fmt::format("frame {}: {}", f, fault));
       return faults;
     }
   }

@@ -10,6 +10,7 @@
 #include <cctype>
 #include <utility>
 
+#include "core/picture_names.hpp"
 #include "imaging/codecs/codecs.hpp"
 #include "imaging/stack/formats/byte_file.hpp"
 #include "imaging/stack/formats/raw_pixels.hpp"
@@ -154,7 +155,7 @@ class Picture final : public FrameSource {
 
 extern const Reader picture_reader;
 const Reader picture_reader = {
-    .extensions = ".png .jpg .jpeg .bmp .pgm",
+    .extensions = kPictureEndings,
     .owns = [](const Head& head) { return kind_of(head) != nullptr; },
     .open = [](const fs::path& file, const std::string&) -> std::unique_ptr<FrameSource> {
       return std::make_unique<Picture>(file);

@@ -14,6 +14,7 @@
 #include <cstring>
 #include <opencv2/imgproc.hpp>
 
+#include "core/picture_names.hpp"
 #include "imaging/stack/formats/byte_file.hpp"
 #include "imaging/stack/formats/raw_stack.hpp"
 #include "imaging/stack/formats/reader.hpp"
@@ -452,7 +453,7 @@ class Pages final : public FrameSource {
 
 extern const Reader tiff_reader;
 const Reader tiff_reader = {
-    .extensions = ".tif .tiff",
+    .extensions = kTiffEndings,
     .owns =
         [](const Head& head) {
           return head.starts_with({"II*\0", 4}) || head.starts_with({"MM\0*", 4}) ||

@@ -1,5 +1,10 @@
 """locate and track from Python against the program."""
 import io
+import os
+import signal
+import subprocess
+import sys
+import time
 
 import numpy as np
 import pytest
@@ -145,10 +150,66 @@ def test_options_are_those_of_the_verbs():
             mine = set(inspect.signature(function).parameters)
         except ValueError:  # a function of C++
             mine = set(re.findall(r"(\w+): ", function.__doc__.splitlines()[0]))
-        assert mine > positional and mine - positional - {"callback"} <= options, verb
+        assert mine > positional and mine - positional - {"callback", "box"} <= options, verb  # box: of an array
 
 
 def test_a_callback_is_told_of_frames_only():
     seen = []
     twincell.track(DEMO, cell=DEMO / "CELL.toml", frames="0:40", callback=lambda done, total: seen.append((done, total)))
     assert seen and all(0 <= done <= total and total > 0 for done, total in seen), seen
+
+
+def test_slices_and_single_frames_keep_their_numbers():
+    frames = twincell.open_frames(DEMO)
+    by_option = twincell.locate(DEMO, frames="10:13")
+    assert sorted(set(by_option["frame"])) == [10, 11, 12]
+    for same in (twincell.locate(frames[10:13]), twincell.locate(frames[8:20], frames="2:5")):
+        assert same.equals(by_option)
+        assert [f["frame"] for f in same.attrs["frames"]] == [10, 11, 12]
+    assert sorted(set(twincell.locate(frames[4:11:3])["frame"])) == [4, 7, 10]
+    settings = twincell.locate(frames[10:13]).attrs["settings"]
+    assert settings["frames"] == ""  # of other frames too
+    for wrong in ("5", "-5:", "1:2:0"):  # as the option of the verb
+        with pytest.raises(twincell.ConfigError, match="frames"):
+            twincell.locate(frames[8:20], frames=wrong)
+    assert frames[10].frame_no == 10 and frames[10:20][2].frame_no == 12
+    for pictures in (frames[12], [frames[12]], reversed([frames[12]])):
+        assert set(twincell.locate(pictures, **settings)["frame"]) == {12}
+    backwards = twincell.locate(frames[12:9:-1], **settings)
+    assert list(dict.fromkeys(backwards["frame"])) == [12, 11, 10]
+    assert isinstance(float(frames[0].mean()), float) and not isinstance(frames[0].max(), np.ndarray)
+
+
+def test_a_slice_is_tracked_with_its_phases():
+    frames = twincell.open_frames(DEMO)
+    part, option = (twincell.track(stack, cell=DEMO / "CELL.toml", **options)
+                    for stack, options in ((frames[10:50], {}), (DEMO, {"frames": "10:50"})))
+    assert list(part.phase[:3]) == [10, 11, 12] and np.array_equal(part.phase, option.phase)
+    assert np.array_equal(part.time, option.time) and np.array_equal(part.cycle, option.cycle)
+
+
+def test_masked_pixels_are_refused():
+    picture = np.ma.masked_array(np.asarray(twincell.open_frames(DEMO)[0]))
+    picture[:40, :] = np.ma.masked
+    with pytest.raises(ValueError, match="picture: has masked pixels"):
+        twincell.locate(picture)
+
+
+def test_ctrl_c_stops_a_slow_fit_at_once():
+    code = ("import signal, time, twincell\n"
+            "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+            f"stack = {str(DEMO)!r}\n"
+            "print('ready', flush=True)\n"
+            "try:\n"
+            "    twincell.locate(stack, refine='overlapping')\n"
+            "except KeyboardInterrupt:\n"
+            "    print('stopped', len(twincell.locate(stack, frames='0:1')) > 10)\n")
+    process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, env=os.environ)
+    try:
+        assert process.stdout.readline() == "ready\n"
+        time.sleep(1)
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=60)  # the whole stack takes minutes
+    finally:
+        process.kill()
+    assert out == "stopped True\n"

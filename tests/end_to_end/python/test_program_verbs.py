@@ -107,9 +107,30 @@ def test_refusals_are_the_sentences_of_the_program(inputs, tmp_path):
         said, code = sentence(*words)
         with pytest.raises(twincell.Error) as raised:
             call()
-        assert str(raised.value) == said and raised.value.exit_code == code
+        # Options have the names of Python, such as threds for --threds.
+        assert str(raised.value) == said.replace("--", "") and raised.value.exit_code == code
     with pytest.raises(OSError):
         twincell.calibrate_walls("no-folder")
+
+
+def test_only_missing_beads_are_noted(tracked, tmp_path, recwarn):
+    assert np.isfinite(np.asarray(tracked.positions)).all()
+    twincell.export(tracked, to="xyz", output=tmp_path / "whole.xyz")
+    assert not [w for w in recwarn if "beads are missing" in str(w.message)]
+    positions = np.asarray(tracked.positions).copy()
+    positions[3, 5] = np.nan
+    with pytest.warns(UserWarning, match="beads are missing in some frames"):
+        twincell.export(twincell.Trajectory.from_arrays(positions), to="xyz", output=tmp_path / "gaps.xyz")
+
+
+def test_pairs_of_numbers_are_tuples(sim_file, tmp_path):
+    dump = tmp_path / "beads.xyz"
+    twincell.export(sim_file, to="xyz", output=dump)
+    made = twincell.import_(dump, output=tmp_path / "moved.h5", cell_origin=(1.5, 0.25))
+    assert made["beads"] == 60
+    moved, as_it_was = (twincell.Trajectory.open(f).positions[0] for f in (tmp_path / "moved.h5", sim_file))
+    assert np.allclose(moved[:, 0], as_it_was[:, 0] - 1.5, atol=1e-12)
+    assert np.allclose(moved[:, 2], as_it_was[:, 2] - 0.25, atol=1e-12)
 
 
 def test_what_a_callback_raises_stops_the_program(inputs, tmp_path):

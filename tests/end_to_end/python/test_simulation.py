@@ -165,6 +165,20 @@ def test_ctrl_c_stops_a_simulation_and_leaves_no_file(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_handler_that_does_not_raise_lets_the_run_go_on():
+    hits = []
+    before = signal.signal(signal.SIGINT, lambda *_: hits.append(1))
+    try:
+        timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        run = twincell.simulate(SCENE, set={"time.cycles": 30})
+        timer.join()
+        assert len(run) == 300
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert hits == [1]
+
+
 def test_an_interrupted_run_goes_on_to_the_same_bits():
     scene = twincell.Scene.from_dict(SCENE)
     sim = twincell.Simulation(scene)

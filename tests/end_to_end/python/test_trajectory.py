@@ -218,6 +218,16 @@ def test_mdanalysis_reads_the_same(tracked):
     assert universe.trajectory.dt == pytest.approx(tracked.time[1] - tracked.time[0])
 
 
+def test_mdanalysis_has_the_times(sim_file):
+    pytest.importorskip("MDAnalysis", reason="python3-mdanalysis is missing")
+    t = twincell.Trajectory.open(sim_file)
+    assert t.time[0] > 1  # after the discarded cycle
+    assert [ts.time for ts in t.to_mdanalysis().trajectory] == pytest.approx(list(t.time))
+    uneven = twincell.Trajectory.from_arrays(np.zeros((4, 1, 2)), time=[0, 1, 5, 6])
+    with pytest.warns(UserWarning, match="not evenly spaced"):
+        uneven.to_mdanalysis()
+
+
 @pytest.mark.parametrize("words, call, kind", [
     (("analyze", "/nowhere.h5"), lambda: twincell.analyze("/nowhere.h5"), OSError),
     (("analyze", __file__), lambda: twincell.Trajectory.open(__file__), OSError),
@@ -330,9 +340,98 @@ def test_trajectories_and_scenes_are_pickled(tmp_path, sim_file, scene_file):
     for t in (0, len(run) - 1):
         assert np.array_equal(same.positions[t], run.positions[t])
         assert np.array_equal(same.velocities[t], run.velocities[t])
-        # A file holds the forces of contacts in single precision.
-        assert np.allclose(same.contacts[t]["normal_force"], run.contacts[t]["normal_force"], rtol=1e-6)
+        assert np.array_equal(same.contacts[t], run.contacts[t])
     assert twincell.analyze(same, ["s_b"])["s_b"].value == twincell.analyze(run, ["s_b"])["s_b"].value
+
+
+def test_a_replaced_file_is_not_taken_for_the_trajectory(tmp_path, scene_file, monkeypatch):
+    """A Trajectory is that of the file as it was opened, wherever the process stands."""
+    monkeypatch.chdir(tmp_path)
+    first = twincell.simulate(scene_file, "run.h5", set={"time.cycles": 2})
+    kept = pickle.dumps(first)
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    twincell.simulate(scene_file, "run.h5", set={"time.cycles": 2, "beads.count": 35})
+    assert twincell.export(first, to="csv", output="first.csv")["beads"] == 60
+    assert pickle.loads(pickle.dumps(first)).n_beads == 60
+    monkeypatch.chdir(tmp_path)
+    twincell.simulate(scene_file, "run.h5", set={"time.cycles": 2, "beads.count": 40})
+    assert twincell.export(first, to="csv", output="again.csv")["beads"] == 60
+    assert pickle.loads(pickle.dumps(first)).n_beads == 60
+    with pytest.raises(twincell.InputError, match="was replaced or changed since the trajectory was pickled"):
+        pickle.loads(kept)
+
+
+def test_contacts_have_the_numbers_of_the_verb(scene_file, tmp_path):
+    """Also those of which a file keeps single precision."""
+    in_memory = twincell.simulate(scene_file, contacts=True)
+    path = tmp_path / "contacts.h5"
+    assert program("simulate", scene_file, "-o", path, "-q", "--contacts").returncode == 0
+    for name in ("contact_force", "pressure", "wall_force"):
+        of_file = document("analyze", path, "--only", name)["results"][name]
+        assert np.array_equal(twincell.analyze(in_memory, [name])[name].value, of_file["value"]), name
+
+
+def test_results_and_boxes_are_pickled(sim_file):
+    results = twincell.analyze(sim_file)
+    again = pickle.loads(pickle.dumps(results))
+    assert again.keys() == results.keys() and again.to_dict() == results.to_dict()
+    assert again.provenance == results.provenance
+    one = pickle.loads(pickle.dumps(results["T_g"]))
+    assert one.value == results["T_g"].value and one.interval == results["T_g"].interval
+    box = twincell.Trajectory.open(sim_file).box
+    assert repr(pickle.loads(pickle.dumps(box))) == repr(box)
+
+
+def test_arrays_are_analysed():
+    """Every observable on arrays alone; each frame counts as a cycle."""
+    random = np.random.default_rng(3)
+    steps = random.normal(scale=0.05, size=(40, 200, 2))
+    points = random.uniform(0, 20, size=(200, 2)) + np.cumsum(steps, axis=0)
+    results = twincell.analyze(points, ["msd", "g_r", "voronoi_area"], box=[20, 20])
+    # A walk of N beads whose centre of mass is taken away: 4 D m (1 - 1/N).
+    assert results["msd"].value[3] == pytest.approx(4 * 2 * 0.05**2, rel=0.06)
+    assert np.isfinite(results["g_r"].value).any()
+    alone = twincell.analyze(points[0], ["g_r"], box=[20, 20])["g_r"].value
+    assert np.array_equal(alone, twincell.analyze(points[:1], ["g_r"], box=[20, 20])["g_r"].value, equal_nan=True)
+    with pytest.raises(ValueError, match="box: is that of an array of points"):
+        twincell.analyze(twincell.Trajectory.from_arrays(points), box=[20, 20])
+    for wrong in (None, 3):
+        with pytest.raises(TypeError, match="a Trajectory or the name of its file is needed, not"):
+            twincell.analyze(wrong)
+    assert twincell.Trajectory.from_arrays(points, box=[20, 20]).box.boundary == ["periodic", "open", "periodic"]
+
+
+def test_masked_numbers_are_missing():
+    lattice = np.array([[x + 0.5 * (z % 2), z * 0.75**0.5] for z in range(6) for x in range(6)])
+    masked = np.ma.masked_array(lattice, mask=np.zeros(lattice.shape, dtype=bool))
+    masked.mask[14] = True
+    missing = lattice.copy()
+    missing[14] = np.nan
+    assert np.array_equal(twincell.coordination(masked), twincell.coordination(missing))
+    assert twincell.coordination(masked)[15] < twincell.coordination(lattice)[15]
+    t = twincell.Trajectory.from_arrays(np.ma.stack([masked, masked]))
+    assert np.isnan(t.positions[1][14]).all() and np.isfinite(t.positions[1][13]).all()
+
+
+def test_frames_out_of_order_are_refused():
+    with pytest.raises(OSError, match="does not come after phase 1 of cycle 0 of frame 1"):
+        twincell.Trajectory.from_arrays(np.zeros((3, 1, 2)), phase=[0, 1, 0], cycle=[0, 0, 0], phases_per_cycle=2)
+
+
+def test_copies_are_not_writable(sim_file):
+    t = twincell.Trajectory.open(sim_file)
+    for column in (t.phase, t.cycle, t.time, t.step, t.plate_height):
+        with pytest.raises(ValueError, match="read-only"):
+            column[0] = 99
+
+
+def test_docstrings_name_the_parameters_of_python():
+    for name in ("analyze", "track", "analyze_windows", "bond_order"):
+        head, _, text = getattr(twincell, name).__doc__.partition("\n")
+        for stranger in ("null: not", "left_out:", "weight:", "progress:", "open:"):
+            assert stranger not in text, (name, stranger)
+    assert "(n_beads, 3)" in twincell.Trajectory.positions.__doc__
 
 
 def test_docstrings_are_those_of_the_headers():

@@ -462,6 +462,69 @@ TEST_F(ForeignFormats, TrackMateTracks) {
   EXPECT_EQ(read("trackmate", {.timestep = 1}).info().n_beads, 3U);
 }
 
+// "Export tracks to XML" of TrackMate states the interval of its frames.
+TEST_F(ForeignFormats, TracksOfTrackMateHaveTheirTimes) {
+  const auto list = [](const std::string& attributes) {
+    return "<?xml version=\"1.0\"?>\n<Tracks nTracks=\"1\" " + attributes +
+           "><particle nSpots=\"2\"><detection t=\"3\" x=\"1\" y=\"2\" z=\"0\"/>"
+           "<detection t=\"5\" x=\"1.5\" y=\"2\" z=\"0\"/></particle></Tracks>";
+  };
+  put_file(file(), list("spaceUnits=\"mm\" frameInterval=\"0.01\" timeUnits=\"sec\""));
+  ForeignOptions options;
+  options.sigma = 0.25;
+  options.gravity = 4;  // t0 = 0.25
+  options.origin = Vec3(0, 4, 0);
+  const ForeignTrajectory source(file(), foreign_format("trackmate", ""), options);
+  EXPECT_EQ(source.length_unit(), "mm");
+  MemoryTrajectory t(source.info());
+  source.copy_to(t);
+  EXPECT_DOUBLE_EQ(t.frames()[0].time, 0.03 / 0.25);
+  EXPECT_DOUBLE_EQ(t.frames()[1].time, 0.05 / 0.25);
+  EXPECT_DOUBLE_EQ(t.info().box.upper.y(), 1) << "a file without a box states no gap";
+  EXPECT_EQ(refusal("trackmate", list("frameInterval=\"0\""), {}),
+            "f:2: frameInterval is 0; it must be above 0.");
+  EXPECT_NE(refusal("trackmate", list(""), {}).find("does not state the length of a step"),
+            std::string::npos);
+}
+
+// pandas writes the index of a table as its first column, which trackpy's filters leave in the table too.
+TEST_F(ForeignFormats, AColumnThatIsAlsoTheIndexIsReadOnce) {
+  const std::string head = "frame,frame,particle,x,y\n";
+  put_file(file(), head + "0,0,7,1,-3\n1,1,7,2,-3\n");
+  EXPECT_EQ(read("csv", {.timestep = 1}).n_frames(), 2U);
+  EXPECT_EQ(refusal("csv", head + "0,0,7,1,-3\n0,1,7,2,-3\n"),
+            "f:3: frame: the column occurs twice, with the values '0' and '1'.");
+  EXPECT_EQ(refusal("csv", "particle,frame,frame,x,y\n7,0,0,1,-3\n"), "f:1: frame: the column occurs twice.");
+}
+
+// Boxes of LAMMPS and OVITO that are cuboids along the axes, written in the forms of other boxes.
+TEST_F(ForeignFormats, CuboidsInGeneralFormsAreRead) {
+  const auto dump = [](const std::string& box) {
+    return "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS " + box +
+           "\nITEM: ATOMS id x y z\n1 2 3 0\n";
+  };
+  for (const char* box : {"pp ff pp\n-1 7\n0 9\n-0.5 0.5", "xy xz yz pp ff pp\n-1 7 0\n0 9 0\n-0.5 0.5 0",
+                          "abc origin pp ff pp\n8 0 0 -1\n0 9 0 0\n0 0 1 -0.5"}) {
+    put_file(file(), dump(box));
+    const MemoryTrajectory t = read("lammps-dump", {.timestep = 1});
+    EXPECT_DOUBLE_EQ(t.info().box.size().x(), 8) << box;
+    EXPECT_DOUBLE_EQ(t.info().box.size().z(), 9) << box;
+    EXPECT_DOUBLE_EQ(t.frames()[0].position[0].x(), 3) << box;  // along a period from its beginning
+    EXPECT_EQ(t.info().box.boundary[0], Boundary::periodic) << box;
+  }
+  for (const char* box : {"xy xz yz pp ff pp\n-1 7 0.1\n0 9 0\n-0.5 0.5 0",
+                          "abc origin pp ff pp\n8 0.1 0 -1\n0 9 0 0\n0 0 1 -0.5"})
+    EXPECT_EQ(refusal("lammps-dump", dump(box)),
+              "f:6: the box is not a cuboid along the axes (tilted boxes are not read).");
+  EXPECT_EQ(refusal("lammps-dump", dump("xy xz yz pp ff pp\n-1 7\n0 9 0\n-0.5 0.5 0")),
+            "f:6: 3 numbers are needed, '-1 7' was found.");
+
+  put_file(file(), "1\nLattice=\"8 0 0 0 9 0 0 0 0\" pbc=\"T F T\" Properties=pos:R:3\n1 2 0\n");
+  const MemoryTrajectory planar = read("xyz", {.timestep = 1});
+  EXPECT_DOUBLE_EQ(planar.info().box.size().x(), 8);
+  EXPECT_DOUBLE_EQ(planar.info().box.size().z(), 9);
+}
+
 TEST_F(ForeignFormats, TracksOfTheIsbiChallenge) {
   for (const int dimension : {2, 3}) {
     const MemoryTrajectory out = three_beads(dimension);

@@ -166,5 +166,77 @@ TEST(H5mdRanges, DataInOtherFilesIsNotRead) {
   }
 }
 
+// Frames that contradict themselves or each other.
+TEST(H5mdRanges, FramesThatCannotBeAreRefused) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "t.h5";
+  TrajectoryInfo info = sound();
+  info.columns.identity = info.columns.position_sigma = info.columns.time_mean = true;
+  const auto put = [&](const std::function<void(Frame&)>& spoil, std::int64_t second_cycle = 1) {
+    H5mdWriter writer(file, info);
+    int written = 0;
+    for (const std::int64_t cycle : {std::int64_t{0}, second_cycle}) {
+      Frame frame;
+      frame.step = static_cast<std::int64_t>(written) * 10;
+      frame.time = static_cast<double>(frame.step);
+      frame.position = {Vec3(1, 0, 1), Vec3(3, 0, 1)};
+      frame.position_sigma = {Vec3(0.1, std::nan(""), 0.1), Vec3(0.1, std::nan(""), 0.1)};
+      frame.id = {0, 1};
+      frame.time_mean = {Vec3(0.1, 0, 0.2), Vec3(0.1, 0, 0.1)};
+      frame.cycle = cycle;
+      frame.phase = 4;
+      if (written++ == 1) spoil(frame);
+      writer.append(frame);
+    }
+    writer.finish();
+  };
+  put([](Frame&) {});
+  EXPECT_EQ(run_program({"validate", file}).code, 0) << run_program({"validate", file}).err;
+  const std::vector<std::pair<std::string, std::function<void(Frame&)>>> faults = {
+      {"slot 1 is a bead without a finite position", [](Frame& f) { f.position[1].x() = std::nan(""); }},
+      {"slot 0 is empty but has a position", [](Frame& f) { f.id[0] = -1; }},
+      {"slot 0 is empty but has a position", [](Frame& f) { f.id[0] = -7; }},
+      {"the id 1 occurs twice", [](Frame& f) { f.id[0] = 1; }},
+      {"the uncertainty of bead 1 is -1", [](Frame& f) { f.position_sigma[1].x() = -1; }},
+      {"a temperature is -5", [](Frame& f) { f.time_mean.temperature.z() = -5; }}};
+  for (const auto& [what, spoil] : faults) {
+    put(spoil);
+    const Ran valid = run_program({"validate", file}), used = run_program({"analyze", file, "-q"});
+    for (const Ran& ran : {valid, used}) {
+      EXPECT_EQ(ran.code, 3) << what;
+      EXPECT_NE((ran.err + ran.out).find("frame 1: " + what), std::string::npos) << ran.err << ran.out;
+    }
+  }
+  for (const std::int64_t cycle : {0, -1}) {
+    put([](Frame&) {}, cycle);
+    expect_refused(file, "which does not come after phase 4 of cycle 0 of frame 0");
+  }
+}
+
+// The plate of a simulation is where its drive puts it.
+TEST(H5mdRanges, AChangedDriveIsFoundByThePlate) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "t.h5";
+  for (const double stated : {1.0, 2.0}) {
+    TrajectoryInfo info = sound();
+    info.columns.plate_height = true;
+    info.drive->amplitude = stated;
+    H5mdWriter writer(file, info);
+    Frame frame;
+    frame.position = {Vec3(1, 0, 1), Vec3(3, 0, 1)};
+    frame.phase = 5;
+    frame.cycle = 0;
+    frame.plate_height = 1;  // A sin(pi/2)
+    writer.append(frame);
+    writer.finish();
+    const Ran ran = run_program({"validate", file});
+    EXPECT_EQ(ran.code, stated == 1 ? 0 : 3);
+    EXPECT_EQ((ran.err + ran.out).find("the plate is at 1, but the drive of the file puts it at 2") !=
+                  std::string::npos,
+              stated == 2)
+        << ran.err << ran.out;
+  }
+}
+
 }  // namespace
 }  // namespace twincell

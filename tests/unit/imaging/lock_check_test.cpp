@@ -12,6 +12,7 @@
 #include <random>
 
 #include "core/error.hpp"
+#include "imaging/phase/phases_of_times.hpp"
 #include "imaging/phase/sine_slips.hpp"
 #include "tests/support/complaint.hpp"
 
@@ -187,6 +188,68 @@ TEST(LockCheck, APlateThatIsOftenMisreadIsNamed) {
   const PhaseTable table = check_lock({20, 0}, {.plate_px = plate, .times_s = {}});
   EXPECT_TRUE(table.out_of_lock.empty());
   EXPECT_NE(table.warning.find("off its sine in 10 of 200 frames"), std::string::npos) << table.warning;
+}
+
+TEST(LockCheck, OneFrameThatIsNotWhereItBelongsIsNamed) {
+  std::vector<double> plate = plate_of({.frames = 100, .drop = {}}, 1);
+  plate[33] = plate[40];
+  EXPECT_NE(
+      check_lock({20, 0}, {.plate_px = plate, .times_s = {}}).warning.find("off its sine in 1 of 100 frames"),
+      std::string::npos);
+}
+
+/// Phases of a list: frame f is taken at `per_frame` f + `from` cycles.
+PhaseTable listed(int frames, double per_frame, double from) {
+  std::vector<double> cycles;
+  for (int f = 0; f < frames; ++f) cycles.push_back(from + per_frame * f);
+  PhaseTable table{.method = PhaseMethod::triggers};
+  EXPECT_TRUE(set_phases_of_times(table, cycles, 0));
+  return table;
+}
+
+TEST(LockCheck, AListIsHeldAgainstThePlate) {
+  const std::vector<double> plate = plate_of({.frames = 100, .drop = {}}, 1);
+  PhaseTable right = listed(100, 0.05, 0);
+  check_list_by_plate(right, plate, true);
+  EXPECT_EQ(right.checked_by, "the plate");
+  // A period of 19.3 frames, and one that is seen once per cycle only, stroboscopically.
+  const std::vector<double> uneven = plate_of({.frames = 100, .period = 19.3, .drop = {}}, 2);
+  PhaseTable free = listed(100, 1 / 19.3, 0), aliased = listed(100, 1 + 1 / 19.3, 0);
+  check_list_by_plate(free, uneven, true);
+  check_list_by_plate(aliased, uneven, true);
+  // Triggers that miss a frame.
+  Film gaps{.frames = 100, .drop = {30, 31, 60}};
+  std::vector<double> cycles;
+  for (const std::int64_t t : ticks_of(gaps)) cycles.push_back(0.05 * static_cast<double>(t));
+  PhaseTable missing{.method = PhaseMethod::triggers};
+  ASSERT_TRUE(set_phases_of_times(missing, cycles, 20));
+  check_list_by_plate(missing, plate_of(gaps, 3), true);
+
+  PhaseTable twice = listed(100, 0.1, 0), shifted = listed(100, 0.05, 0.25),
+             milliseconds = listed(100, 50, 0);
+  expect_refusal<ConfigError>([&] { check_list_by_plate(twice, plate, true); },
+                              "by the list there are 10 frames per cycle", "repeats itself after 20 frames",
+                              "--trust-stated-drive");
+  expect_refusal<ConfigError>([&] { check_list_by_plate(shifted, plate, true); },
+                              "0.25 of a cycle earlier in its cycle than the phases of the list state");
+  expect_refusal<ConfigError>([&] { check_list_by_plate(milliseconds, plate, true); },
+                              "repeats itself after 20 frames");
+  // The shaker starts after some cycles.
+  for (const int resting : {60, 80, 100}) {
+    std::vector<double> started(static_cast<std::size_t>(resting), plate[0]);
+    started.insert(started.end(), plate.begin(), plate.begin() + 80);
+    PhaseTable all = listed(resting + 80, 0.05, 0);
+    check_list_by_plate(all, started, true);
+  }
+  PhaseTable recorded = listed(100, 0.05, 0.25);
+  check_list_by_plate(recorded, plate, false);
+  // Without a plate in the picture nothing is said.
+  std::vector<double> noise(100);
+  std::mt19937_64 generator(4);
+  for (double& h : noise) h = std::normal_distribution<double>(0, 0.3)(generator);
+  PhaseTable unseen = listed(100, 0.1, 0);
+  check_list_by_plate(unseen, noise, true);
+  EXPECT_EQ(unseen.checked_by, "");
 }
 
 TEST(LockCheck, AFilmOfTwoStrengthsIsNoFilmWithLostFrames) {

@@ -46,8 +46,8 @@ double deepest_in_wall(const std::vector<Bead>& beads, const Scene& s) {
   return deepest;
 }
 
-template <class ContactLoad>
-std::string complaint(ContactLoad action) {
+template <class Action>
+std::string complaint(Action action) {
   try {
     action();
   } catch (const Error& e) {
