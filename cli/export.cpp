@@ -124,9 +124,8 @@ void export_beads(const ExportOptions& o, const Common& common) {
   if (source.has_gaps() &&
       (format.word == std::string_view("xyz") || format.word == std::string_view("lammps-dump")))
     note(common,
-         "beads are missing in some frames; MDAnalysis needs the same number in all (OVITO reads the file; "
-         "gsd and csv "
-         "are other ways).");
+         "beads are missing in some frames; MDAnalysis needs the same number in all frames, OVITO does not; "
+         "gsd and csv state which beads are missing.");
   print_result(
       common,
       {{"output", o.output},

@@ -65,18 +65,19 @@ void note_doubts(const Common& common, const ForeignTrajectory& source, double s
                              "bead diameter is {:g} in the unit of the file (--sigma).",
                              d, sigma));
   constexpr double kOverlap = 0.7, kOtherSize = 1.5;
-  if (const std::vector<double>& radii = source.info().radius; !radii.empty())
-    if (const double wide = 2 * upper_median(radii); wide > kOtherSize || wide < 1 / kOtherSize)
+  if (const std::vector<double>& radii = source.info().radius; !radii.empty()) {
+    const double wide = 2 * upper_median(radii);
+    if (wide > kOtherSize || wide < 1 / kOtherSize)
       note(common,
            fmt::format("by their radii the beads are {:.3g} wide in the unit of the file, but sigma is {:g} "
                        "(--sigma).",
                        wide * sigma, sigma));
-  if (const std::vector<double>& radii = source.info().radius; !radii.empty())
-    if (const double wide = 2 * upper_median(radii); source.spacing() < kOverlap * wide)
+    if (source.spacing() < kOverlap * wide)
       note(common,
            fmt::format("the nearest neighbours in the first frame are {:.3g} bead diameters apart and "
                        "overlap, because their radii make them {:.3g} wide: the radii may be diameters.",
                        source.spacing(), wide));
+  }
   if (source.n_beyond() > 0)
     note(common, fmt::format("{} of the first frame {} beyond the side walls of the cell, which is {:.4g} "
                              "bead diameters wide (--cell-origin, --cell-width).",

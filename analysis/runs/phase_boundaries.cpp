@@ -22,13 +22,12 @@ void bracket(const Gammas& gammas, PhaseBoundary& boundary) {
   // one.
   boundary.overlap = true;
   const double first = *boundary.above, last = *boundary.below;
-  std::optional<double> lower, upper;
+  boundary.below.reset();
+  boundary.above.reset();
   for (const double g : gammas.without)
-    if (g < first) lower = std::max(lower.value_or(g), g);
+    if (g < first) boundary.below = std::max(boundary.below.value_or(g), g);
   for (const double g : gammas.with)
-    if (g > last) upper = std::min(upper.value_or(g), g);
-  boundary.below = lower;
-  boundary.above = upper;
+    if (g > last) boundary.above = std::min(boundary.above.value_or(g), g);
 }
 
 }  // namespace

@@ -107,18 +107,39 @@ cv::Mat1b regions_of(const cv::Mat1b& dark_pixels, double disc_radius_px) {
   return regions;
 }
 
+/// Levels of pixels spread over the picture.
+std::vector<float> sampled_levels(const cv::Mat1f& darkness) {
+  constexpr double kSamples = 20000;
+  const int stride =
+      std::max(1, static_cast<int>(std::sqrt(static_cast<double>(darkness.total()) / kSamples)));
+  std::vector<float> levels;
+  for (int y = stride / 2; y < darkness.rows; y += stride)
+    for (int x = stride / 2; x < darkness.cols; x += stride) levels.push_back(darkness(y, x));
+  return levels;
+}
+
+/// The darkness above which thick regions are walls: 0.75, or 0.75 of the darkest level if nothing is as dark
+/// as that, as with red walls and beads in grey levels. Below kPalest the contrast is measured instead
+/// (PreprocessOptions::contrast). A share of the darkest level in every picture would take blurred crystals
+/// for walls.
+float least_wall_darkness(std::vector<float> levels) {
+  constexpr float kDark = 0.75F, kOfDarkest = 0.93F;  // a wall is as even as that
+  constexpr float kPalest = 0.5F;
+  constexpr double kDarkest = 0.02;  // share of the pixels
+  if (levels.empty()) return kDark;
+  const auto at =
+      levels.end() - 1 - static_cast<std::ptrdiff_t>(kDarkest * static_cast<double>(levels.size()));
+  std::nth_element(levels.begin(), at, levels.end());
+  return *at > kPalest && kOfDarkest * *at < kDark ? kDark * *at : kDark;
+}
+
 /// Pixels darker than a limit. Where the noise makes single pixels of a dark region lighter than that, they
 /// count too: the mean of the nine pixels about such a pixel is above the limit, and the pixel is as dark as
 /// the noise allows. A gap between beads is lighter, or lightens the mean.
-cv::Mat1b pixels_darker_than(float limit, const cv::Mat1f& darkness) {
-  constexpr double kErrors = 6, kSamples = 20000;
+cv::Mat1b pixels_darker_than(float limit, const cv::Mat1f& darkness, std::vector<float> levels) {
+  constexpr double kErrors = 6;
   cv::Mat1b dark = darkness > limit;
-  std::vector<float> levels;
-  const int stride =
-      std::max(1, static_cast<int>(std::sqrt(static_cast<double>(darkness.total()) / kSamples)));
-  for (int y = stride / 2; y < darkness.rows; y += stride)
-    for (int x = stride / 2; x < darkness.cols; x += stride)
-      if (darkness(y, x) > limit) levels.push_back(darkness(y, x));
+  std::erase_if(levels, [&](float level) { return level <= limit; });
   if (levels.empty()) return dark;
   const auto least = static_cast<float>(static_cast<double>(upper_median(std::move(levels))) -
                                         kErrors * std::sqrt(noise_of(darkness).dark));
@@ -130,24 +151,10 @@ cv::Mat1b pixels_darker_than(float limit, const cv::Mat1f& darkness) {
   return dark;
 }
 
-/// The darkness above which thick regions are walls: 0.75, or 0.75 of the darkest level if nothing is as dark
-/// as that, as with red walls and beads in grey levels. Below kPalest the contrast is measured instead
-/// (PreprocessOptions::contrast). A share of the darkest level in every picture would take blurred crystals
-/// for walls.
-float least_wall_darkness(const cv::Mat1f& darkness) {
-  constexpr float kDark = 0.75F, kOfDarkest = 0.93F;  // a wall is as even as that
-  constexpr float kPalest = 0.5F;
-  constexpr double kSamples = 20000, kDarkest = 0.02;  // share of the pixels
-  const int stride =
-      std::max(1, static_cast<int>(std::sqrt(static_cast<double>(darkness.total()) / kSamples)));
-  std::vector<float> levels;
-  for (int y = stride / 2; y < darkness.rows; y += stride)
-    for (int x = stride / 2; x < darkness.cols; x += stride) levels.push_back(darkness(y, x));
-  if (levels.empty()) return kDark;
-  const auto at =
-      levels.end() - 1 - static_cast<std::ptrdiff_t>(kDarkest * static_cast<double>(levels.size()));
-  std::nth_element(levels.begin(), at, levels.end());
-  return *at > kPalest && kOfDarkest * *at < kDark ? kDark * *at : kDark;
+/// Thick regions as dark as walls.
+cv::Mat1b regions_as_dark_as_walls(const cv::Mat1f& darkness, double disc_radius_px) {
+  const std::vector<float> levels = sampled_levels(darkness);
+  return regions_of(pixels_darker_than(least_wall_darkness(levels), darkness, levels), disc_radius_px);
 }
 
 /// Gaussian blur that does not reach into the spare columns beside the picture.
@@ -286,9 +293,7 @@ cv::Mat1b wall_regions(const Prepared& image, bool bright, double radius_px, dou
   // Distances from an edge to either side, in units of the blur.
   constexpr double kTail = 2, kFromDark = 0.7, kFromDarkest = 1.55;
   const auto uneven = bright ? unevenly_lit_regions(image, radius_px, in_radii) : std::nullopt;
-  cv::Mat1b regions =
-      uneven ? *uneven
-             : regions_of(pixels_darker_than(least_wall_darkness(darkness), darkness), in_radii * radius_px);
+  cv::Mat1b regions = uneven ? *uneven : regions_as_dark_as_walls(darkness, in_radii * radius_px);
   cv::Mat1b bars = straight_bars(darkness, 2 * radius_px, 2 * in_radii * radius_px);
   if (regions.empty() && bars.empty()) return {};
   const double blur = blur_of(darkness);
