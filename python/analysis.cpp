@@ -202,12 +202,10 @@ void bind_analysis(py::module_& module) {
       });
   const std::string options_text =
       "\nonly: names of results (result_names()), a list or a text with commas; default: all. discard: "
-      "cycles that are "
-      "left out at the beginning. s_b: variance, about_rest or as_printed; neighbours: cutoff, delaunay or "
-      "voronoi; "
-      "cutoff: largest distance of neighbours, sigma; rest_height: height of the centre of mass of the bed "
-      "at rest, "
-      "sigma (docs/observables.md, docs/statistics.md). callback: called with (done, total).";
+      "cycles that are left out at the beginning. s_b: variance, about_rest or as_printed; neighbours: "
+      "cutoff, delaunay or voronoi; cutoff: largest distance of neighbours, sigma; rest_height: height of "
+      "the centre of mass of the bed at rest, sigma (docs/observables.md, docs/statistics.md). callback: "
+      "called with (done, total).";
   module.def(
       "analyze_windows",
       [](const py::object& trajectory, std::int64_t window_cycles, const py::object& only,
@@ -267,16 +265,13 @@ void bind_analysis(py::module_& module) {
       py::arg("cutoff") = py::none(), py::arg("box") = py::none(), py::arg("callback") = py::none(),
       (summary_text(kHeader, "analyze") +
        "\n\ntrajectory: a Trajectory or the name of its file; a list of them, which are pooled; or an array "
-       "of points, "
-       "(frames, beads, 2) as (x, z), (frames, beads, 3) as (x, y, z), or one frame of it, of which every "
-       "frame counts "
-       "as a cycle. box: of such an array, a Box or the lengths of a periodic box; None: open." +
+       "of points, (frames, beads, 2) as (x, z), (frames, beads, 3) as (x, y, z), or one frame of it, of "
+       "which every frame counts as a cycle. box: of such an array, a Box or the lengths of a periodic box; "
+       "None: open." +
        options_text +
        "\ncycles: number of cycles to use; 0: all. tracers: slots of the tracers; tracer_band: (low, high), "
-       "heights of "
-       "the beads that serve as tracers, sigma. field_cell: edge of the cells of fields, sigma. cell_radius: "
-       "of "
-       "Voronoi cells, sigma.")
+       "heights of the beads that serve as tracers, sigma. field_cell: edge of the cells of fields, sigma. "
+       "cell_radius: of Voronoi cells, sigma.")
           .c_str());
 }
 

@@ -43,8 +43,8 @@ bool FileIdentity::holds() const {
          now->changed_ns == changed_ns;
 }
 
-std::optional<std::filesystem::path> Trajectory::file() const {
-  return file_ && file_->holds() ? std::optional(file_->path) : std::nullopt;
+std::optional<FileIdentity> Trajectory::file() const {
+  return file_ && file_->holds() ? file_ : std::nullopt;
 }
 
 std::shared_ptr<const Frame> Trajectory::frame(std::size_t index) {
@@ -487,10 +487,8 @@ void write(Trajectory& trajectory, const std::filesystem::path& path) {
 /// State for pickle: of a file its absolute path, its size and the time of its last change; in memory the
 /// bytes of its H5MD file.
 py::tuple pickled(Trajectory& trajectory) {
-  if (const auto file = trajectory.file()) {
-    const FileIdentity id = FileIdentity::of(*file);
-    return py::make_tuple(id.path.string(), id.bytes, id.changed_ns);
-  }
+  if (const auto file = trajectory.file())
+    return py::make_tuple(file->path.string(), file->bytes, file->changed_ns);
   const py::object folder = temporary_folder();
   write(trajectory, file_in(folder));
   const py::object bytes =
@@ -606,7 +604,11 @@ void bind_trajectory(py::module_& module) {
           "Number of slots: slot i is the same bead in every frame.")
       .def_property_readonly(
           "name", [](const Trajectory& t) { return t.source().name(); }, "The file, or \"memory\".")
-      .def_property_readonly("_file", &Trajectory::file)
+      .def_property_readonly("_file",
+                             [](const Trajectory& t) {
+                               const auto file = t.file();
+                               return file ? std::optional(file->path) : std::nullopt;
+                             })
       .def_property_readonly("positions", column(nullptr, &Frame::position),
                              of_frame_text("x, y, z", header_text(kHeader, "Frame::position")).c_str())
       .def_property_readonly("velocities", column(&Columns::velocity, &Frame::velocity),

@@ -60,9 +60,9 @@ class Trajectory {
   [[nodiscard]] const TrajectorySource& source() const { return *source_; }
   [[nodiscard]] const TrajectoryInfo& info() const { return source_->info(); }
   [[nodiscard]] std::size_t n_frames() const { return source_->n_frames(); }
-  /// Absolute path of the file, as long as it is the one that was opened; nothing in memory, and after the
+  /// The file, as long as it is the one that was opened; nothing in memory, and after the
   /// file was replaced, changed or removed.
-  [[nodiscard]] std::optional<std::filesystem::path> file() const;
+  [[nodiscard]] std::optional<FileIdentity> file() const;
   /// Frame `index`. \pre index < n_frames()
   std::shared_ptr<const Frame> frame(std::size_t index);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -54,14 +55,16 @@ std::optional<Scene> scene_of_file(const Scene& scene, const TrajectoryInfo& inf
 /// Refuses beads.mass and beads.radius if the file contains these numbers and most of them are others: the
 /// key would have no effect. The keys of the run that wrote the file pass.
 /// \param radii, masses the file contains them \param source words for the file
-/// \param written the scene of that run, if it is known
-void refuse_void_sizes(const Scene& scene, const std::vector<Bead>& beads, bool radii, bool masses,
-                       const std::string& source, const std::optional<Scene>& written = {}) {
-  if (written && written->radius == scene.radius && written->mass == scene.mass) return;
+/// \param written gives the scene of that run, if it is known; read only before a refusal
+void refuse_void_sizes(
+    const Scene& scene, const std::vector<Bead>& beads, bool radii, bool masses, const std::string& source,
+    const std::function<std::optional<Scene>()>& written = [] { return std::nullopt; }) {
   constexpr double kSame = 1e-6;  // units are converted
   const auto refuse_others = [&](const char* key, const char* numbers, double stated, auto differs) {
     const auto others = std::ranges::count_if(beads, differs);
-    if (scene.source && scene.source->has(key) && 2 * others > std::ssize(beads))
+    if (!scene.source || !scene.source->has(key) || 2 * others <= std::ssize(beads)) return;
+    const std::optional<Scene> own = written();
+    if (!own || own->radius != scene.radius || own->mass != scene.mass)
       throw ConfigError(scene.where(key),
                         fmt::format("{} has no effect: {} contains the {} of its beads, and {} of {} differ; "
                                     "remove the key.",
@@ -131,7 +134,7 @@ Start start_in_motion(const Scene& scene, const TrajectoryInfo& info, const Fram
     refuse(complaint);
   require_count(scene, start.beads.size(), name);
   refuse_void_sizes(scene, start.beads, !info.radius.empty(), !info.mass.empty(), name,
-                    scene_of_file(scene, info));
+                    [&] { return scene_of_file(scene, info); });
   return start;
 }
 
@@ -211,7 +214,7 @@ Start from_trajectory(const Scene& scene, Progress& progress) {
   require_count(scene, start.beads.size(), name);
   if (own_sizes)
     refuse_void_sizes(scene, start.beads, !info.radius.empty(), !info.mass.empty(), name,
-                      scene_of_file(scene, info));
+                      [&] { return scene_of_file(scene, info); });
   // Camera noise is a few hundredths of a diameter; an overlap beyond 0.2 means that the file belongs to
   // another cell.
   constexpr double kRefused = 0.2, kTolerated = 1e-4, kLeft = 0.05;
