@@ -12,7 +12,7 @@
 #include "analysis/observable/observable.hpp"
 #include "analysis/observable/timed_analysis.hpp"
 #include "core/cancellation.hpp"
-#include "core/counted.hpp"
+#include "core/plural.hpp"
 #include "trajectory/plate.hpp"
 
 // The list: an observable is NAME.cpp in a room of analysis/, which defines NAME_observable.
@@ -81,10 +81,10 @@ void check(const AnalysisOptions& options) {
       throw ConfigError({.file = {}, .key = "only"}, no_such_result(name) + '.');
   if (options.discard_cycles < 0)
     throw ConfigError({.file = {}, .key = "discard"},
-                      fmt::format("{} cycles cannot be left out; at least 0", options.discard_cycles));
+                      fmt::format("is {}; it must be at least 0.", options.discard_cycles));
   if (options.cycles < 0)
     throw ConfigError({.file = {}, .key = "cycles"},
-                      fmt::format("{} cycles cannot be used; at least 1, or 0 for all", options.cycles));
+                      fmt::format("is {}; it must be at least 1, or 0 for all.", options.cycles));
   if (options.neighbour_cutoff)
     require_range({.file = {}, .key = "cutoff"}, *options.neighbour_cutoff, 0, 5, true);
   require_range({.file = {}, .key = "cell_radius"}, options.cell_radius, 0, 100, true);
@@ -125,6 +125,110 @@ AnalysisContext make_context(const TrajectorySource& trajectory, const AnalysisO
   context.rest_height =
       options.rest_height ? options.rest_height : resting_height(info, frame, context.no_rest_height);
   return context;
+}
+
+/// \throws ConfigError if the options choose cycles of frames without a cycle number, or none of a drive that
+/// changes
+void require_cycles(const TrajectorySource& trajectory, const AnalysisOptions& options) {
+  const TrajectoryInfo& info = trajectory.info();
+  if ((options.discard_cycles > 0 || options.cycles > 0) && !info.columns.phase)
+    throw ConfigError({.file = trajectory.name(), .key = options.cycles > 0 ? "cycles" : "discard"},
+                      "cycles cannot be chosen from a trajectory whose frames have no cycle number");
+
+  if (const std::optional<Drive>& drive = info.drive; drive && drive->ramp && options.cycles == 0)
+    throw ConfigError(
+        {.file = trajectory.name(), .key = "drive.ramp"},
+        fmt::format(
+            "the drive changes during the run (displacement {}), so that no result is that of one "
+            "drive; analyse windows of cycles (--window-cycles), or choose cycles (--discard, --cycles)",
+            drive->formula()));
+}
+
+struct ChosenObservable {
+  std::string_view name;
+  std::unique_ptr<Observable> observable;
+};
+
+/// The observables with a requested result.
+std::vector<ChosenObservable> choose_observables(const AnalysisContext& context) {
+  std::vector<ChosenObservable> chosen;
+  for (std::size_t k = 0; k < entries().size(); ++k)
+    if (const ObservableEntry& entry = *entries()[k];
+        std::any_of(entry.results.begin(), entry.results.end(), [&](const NamedResult& result) {
+          return context.options.wants(std::string(result.name));
+        }))
+      chosen.push_back({kNames[k], entry.make(context)});
+  return chosen;
+}
+
+/// What was analysed.
+struct Used {
+  std::size_t frames = 0;
+  std::int64_t cycles = 0;  ///< after the skipped ones; counted only if the options choose cycles
+};
+
+/// Adds the frames of the chosen cycles to the observables.
+Used add_frames(const TrajectorySource& trajectory, const AnalysisContext& context,
+                const std::vector<ChosenObservable>& chosen, Progress& progress, StageTimes* times) {
+  const AnalysisOptions& options = context.options;
+  Used used;
+  Frame frame;
+  std::int64_t first_cycle = -1;
+  // The number of frames is queried each time: a run that is analysed while it is simulated may end early.
+  for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
+    throw_if_cancelled();
+    {
+      Stage reading(times, "reading", "bead-frames");
+      trajectory.read(f, frame);
+      reading.count(static_cast<double>(frame.position.size()), bytes_read(frame));
+    }
+    progress.update(static_cast<std::int64_t>(f) + 1, static_cast<std::int64_t>(trajectory.n_frames()));
+    if (options.discard_cycles > 0 || options.cycles > 0) {
+      if (frame.cycle < 0) continue;
+      if (first_cycle < 0) first_cycle = frame.cycle;
+      const std::int64_t since = frame.cycle - first_cycle - options.discard_cycles;
+      if (since < 0) continue;
+      used.cycles = std::max(used.cycles, since + 1);
+      if (options.cycles > 0 && since >= options.cycles) break;
+    }
+    ++used.frames;
+    const FrameView view(frame, context);
+    for (const auto& [name, observable] : chosen) {
+      Stage adding(times, name, "bead-frames");
+      observable->add(view);
+      adding.count(static_cast<double>(frame.position.size()), bytes_needed(frame));
+    }
+  }
+  return used;
+}
+
+/// \throws ConfigError if the chosen cycles have no frame or are fewer than requested
+void require_used(const Used& used, const TrajectorySource& trajectory, const AnalysisOptions& options) {
+  if (used.frames == 0)
+    throw ConfigError({.file = trajectory.name(), .key = "discard"},
+                      "leaving out " + plural(options.discard_cycles, "cycle") + " leaves no frame");
+  if (used.cycles < options.cycles)
+    throw ConfigError({.file = trajectory.name(), .key = "cycles"},
+                      fmt::format("{} {} requested, but the trajectory has {}{}",
+                                  plural(options.cycles, "cycle"), options.cycles == 1 ? "was" : "were",
+                                  used.cycles, options.discard_cycles > 0 ? " after the skipped ones" : ""));
+}
+
+/// The requested results of the observables, which may have more.
+std::vector<Result> requested_results(const std::vector<ChosenObservable>& chosen,
+                                      const AnalysisOptions& options, StageTimes* times) {
+  std::vector<Result> results;
+  for (const auto& [name, observable] : chosen) {
+    throw_if_cancelled();
+    const Stage finishing(times, name);
+    for (Result& r : observable->results()) {
+      if (!options.wants(r.name)) continue;
+      if (!r.shape.empty() && !r.interval && r.no_interval.empty())
+        r.no_interval = "no interval is computed for the elements of an array";
+      results.push_back(std::move(r));
+    }
+  }
+  return results;
 }
 
 }  // namespace
@@ -239,80 +343,10 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
   if (trajectory.n_frames() == 0)
     throw InputError({.file = trajectory.name(), .key = {}}, "the trajectory contains no frame");
   const AnalysisContext context = make_context(trajectory, options);
-  if ((options.discard_cycles > 0 || options.cycles > 0) && !context.info.columns.phase)
-    throw ConfigError({.file = trajectory.name(), .key = options.cycles > 0 ? "cycles" : "discard"},
-                      "cycles cannot be chosen from a trajectory whose frames have no cycle number");
-
-  if (const std::optional<Drive>& drive = context.info.drive; drive && drive->ramp && options.cycles == 0)
-    throw ConfigError(
-        {.file = trajectory.name(), .key = "drive.ramp"},
-        fmt::format(
-            "the drive changes during the run (displacement {}), so that no result is that of one "
-            "drive; analyse windows of cycles (--window-cycles), or choose cycles (--discard, --cycles)",
-            drive->formula()));
-
-  // Observables: only those with a requested result.
-  struct Chosen {
-    std::string_view name;
-    std::unique_ptr<Observable> observable;
-  };
-  std::vector<Chosen> chosen;
-  for (std::size_t k = 0; k < entries().size(); ++k)
-    if (const ObservableEntry& entry = *entries()[k];
-        std::any_of(entry.results.begin(), entry.results.end(),
-                    [&](const NamedResult& result) { return options.wants(std::string(result.name)); }))
-      chosen.push_back({kNames[k], entry.make(context)});
-
-  Frame frame;
-  std::int64_t first_cycle = -1, cycles = 0;  // cycles: after the skipped ones
-  std::size_t used = 0;
-  // The number of frames is queried each time: a run that is analysed while it is simulated may end early.
-  for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
-    throw_if_cancelled();
-    {
-      Stage reading(times, "reading", "bead-frames");
-      trajectory.read(f, frame);
-      reading.count(static_cast<double>(frame.position.size()), bytes_read(frame));
-    }
-    progress.update(static_cast<std::int64_t>(f) + 1, static_cast<std::int64_t>(trajectory.n_frames()));
-    if (options.discard_cycles > 0 || options.cycles > 0) {
-      if (frame.cycle < 0) continue;
-      if (first_cycle < 0) first_cycle = frame.cycle;
-      const std::int64_t since = frame.cycle - first_cycle - options.discard_cycles;
-      if (since < 0) continue;
-      cycles = std::max(cycles, since + 1);
-      if (options.cycles > 0 && since >= options.cycles) break;
-    }
-    ++used;
-    const FrameView view(frame, context);
-    for (const auto& [name, observable] : chosen) {
-      Stage adding(times, name, "bead-frames");
-      observable->add(view);
-      adding.count(static_cast<double>(frame.position.size()), bytes_needed(frame));
-    }
-  }
-  if (used == 0)
-    throw ConfigError({.file = trajectory.name(), .key = "discard"},
-                      "leaving out " + counted(options.discard_cycles, "cycle") + " leaves no frame");
-  if (cycles < options.cycles)
-    throw ConfigError({.file = trajectory.name(), .key = "cycles"},
-                      fmt::format("{} {} requested, but the trajectory has {}{}",
-                                  counted(options.cycles, "cycle"), options.cycles == 1 ? "was" : "were",
-                                  cycles, options.discard_cycles > 0 ? " after the skipped ones" : ""));
-
-  // Results: only those requested, because an observable may have more.
-  std::vector<Result> results;
-  for (const auto& [name, observable] : chosen) {
-    throw_if_cancelled();
-    const Stage finishing(times, name);
-    for (Result& r : observable->results()) {
-      if (!options.wants(r.name)) continue;
-      if (!r.shape.empty() && !r.interval && r.no_interval.empty())
-        r.no_interval = "no interval is computed for the elements of an array";
-      results.push_back(std::move(r));
-    }
-  }
-  return results;
+  require_cycles(trajectory, options);
+  const std::vector<ChosenObservable> chosen = choose_observables(context);
+  require_used(add_frames(trajectory, context, chosen, progress, times), trajectory, options);
+  return requested_results(chosen, options, times);
 }
 
 }  // namespace twincell::analysis

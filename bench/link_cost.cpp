@@ -7,11 +7,11 @@
 
 #include <chrono>
 #include <cstdint>
-#include <ctime>
 #include <fstream>
 #include <string>
 #include <vector>
 
+#include "core/cpu_clock.hpp"
 #include "imaging/link/initial_velocities.hpp"
 #include "imaging/link/link.hpp"
 
@@ -24,12 +24,6 @@ T get(std::ifstream& in) {
   T value{};
   in.read(reinterpret_cast<char*>(&value), sizeof value);
   return value;
-}
-
-double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 }  // namespace
@@ -77,18 +71,18 @@ int main(int argc, char** argv) {
     std::ofstream out;
     if (r == 0) out.open(path + ".ids", std::ios::binary);
     imaging::Linker linker(options, phases);
-    const double begun = cpu_seconds();
+    const double begun = processor_seconds();
     linker.begin(imaging::initial_velocities(options, phases, frames.size(), [&](std::size_t f) {
       return imaging::FrameOfBeads{frames[f], {}, time_of(f)};
     }));
-    double seconds = cpu_seconds() - begun;
+    double seconds = processor_seconds() - begun;
     for (std::size_t f = 0; f < frames.size(); ++f) {
       const bool more = f + 1 < frames.size();
       const imaging::FrameAhead ahead =
           more ? imaging::FrameAhead{frames[f + 1], time_of(f + 1), {}} : imaging::FrameAhead{};
-      const double start = cpu_seconds();
+      const double start = processor_seconds();
       const std::vector<std::int64_t> ids = linker.next(frames[f], time_of(f), {}, more ? &ahead : nullptr);
-      seconds += cpu_seconds() - start;
+      seconds += processor_seconds() - start;
       if (r > 0) continue;
       for (std::size_t k = 0; k < ids.size(); ++k) {
         const std::int64_t record[2] = {ids[k], linker.ambiguous()[k]};

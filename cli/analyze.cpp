@@ -179,9 +179,9 @@ void note_cutoff(const Common& common, const TrajectorySource& trajectory,
       sum += 2 * r;
       ++n;
     }
-  constexpr double kLeast = 0.05;  // sizes of measured beads differ from sigma by a few percent
+  constexpr double kMaxSizeSpread = 0.05;  // sizes of measured beads differ from sigma by a few percent
   const double diameter = n > 0 ? sum / static_cast<double>(n) : 1;
-  if (std::abs(diameter - 1) <= kLeast) return;
+  if (std::abs(diameter - 1) <= kMaxSizeSpread) return;
   const double cutoff = analysis::neighbour_cutoff(trajectory.info(), options);
   note(common,
        fmt::format(

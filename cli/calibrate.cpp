@@ -15,6 +15,7 @@
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/json_text.hpp"
 #include "core/output_rules.hpp"
 #include "core/sha256.hpp"
 
@@ -71,9 +72,9 @@ std::string table_of(const std::vector<Measurement>& measured) {
 nlohmann::json json_of(const Measurement& m) {
   nlohmann::json j;
   const auto list = [](const std::vector<double>& v) {
-    if (v.size() == 1) return finite(v.front());
+    if (v.size() == 1) return number_or_null(v.front());
     nlohmann::json a = nlohmann::json::array();
-    for (const double x : v) a.push_back(finite(x));
+    for (const double x : v) a.push_back(number_or_null(x));
     return a;
   };
   j["value"] = list(m.value);
@@ -85,10 +86,6 @@ nlohmann::json json_of(const Measurement& m) {
 }
 
 }  // namespace
-
-nlohmann::json finite(double value) {
-  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
-}
 
 std::string data_hash(const std::string& stack) {
   return "sha256:" + sha256_of(imaging::file_of_stack(stack));

@@ -71,9 +71,6 @@ void finish_calibration(const CalibrateFlags& flags, const Common& common, Calib
 /// "sha256:..." of a file, or of the files of a stack.
 std::string data_hash(const std::string& stack);
 
-/// A number for JSON; null if it is not finite.
-nlohmann::json finite(double value);
-
 /// Adds a kind of calibration: calibrate_NAME.cpp defines add_calibrate_NAME, the list in calibrate.cpp names
 /// it.
 using AddKind = void (*)(CLI::App& calibrate, Common& common);

@@ -10,8 +10,9 @@
 #include "calibration/camera/size_statistics_figure.hpp"
 #include "cli/calibrate.hpp"
 #include "cli/stack_info.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
+#include "core/json_text.hpp"
+#include "core/plural.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
@@ -58,7 +59,7 @@ void run(const BeadOptions& o, const Common& common) {
     if (const auto m = calibrated(cell, "cell.width")) width_error = m->standard_error[0];
   }
   const std::string data = data_hash(o.flags.stack);
-  const std::string method = counted(c.sizes, "disc") + " in " + counted(c.frames, "frame");
+  const std::string method = plural(c.sizes, "disc") + " in " + plural(c.frames, "frame");
   const auto add = [&](const std::string& name, const calibration::Estimate& e, const std::string& how) {
     out.measured.push_back(
         {.name = name, .value = {e.value}, .standard_error = {e.error}, .method = how, .data = data});
@@ -80,7 +81,7 @@ void run(const BeadOptions& o, const Common& common) {
   d["source"] = o.flags.stack;
   d["frames"] = c.frames;
   d["discs"] = c.sizes;
-  d["count"] = {{"value", c.count.value}, {"standard_error", finite(c.count.error)}};
+  d["count"] = {{"value", c.count.value}, {"standard_error", number_or_null(c.count.error)}};
   if (c.spacing)
     d["spacing"] = {{"value", c.spacing->value * unit_px}, {"standard_error", c.spacing->error * unit_px}};
   out.text = fmt::format("{} beads per frame\n", c.count.value);

@@ -12,11 +12,12 @@
 #include "calibration/camera/target_fit.hpp"
 #include "calibration/drive/drive_fit.hpp"
 #include "cli/calibrate.hpp"
-#include "cli/numbers.hpp"
+#include "cli/number_checks.hpp"
 #include "cli/stack_info.hpp"
 #include "core/constants.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
+#include "core/json_text.hpp"
+#include "core/plural.hpp"
 #include "imaging/stack/open_frames.hpp"
 
 namespace twincell::cli {
@@ -60,13 +61,13 @@ void add_target(const CameraCalibration& o, nlohmann::json& d, std::string& text
   text += fmt::format("target: {} points, rms {:.3f} px\n", points.size(), t.rms_px);
   for (std::size_t i = 0; i < t.fit.names.size(); ++i) {
     const double e = t.fit.standard_errors.empty() ? kNaN : t.fit.standard_errors[i];
-    out[t.fit.names[i]] = {{"value", t.fit.values[i]}, {"standard_error", finite(e)}};
+    out[t.fit.names[i]] = {{"value", t.fit.values[i]}, {"standard_error", number_or_null(e)}};
     text += fmt::format("  {:<20} {:.6g} +- {:.2g}\n", t.fit.names[i], t.fit.values[i], e);
   }
   if (o.spacing) {
     const double s = t.fit.values[0] / *o.spacing,
                  e = t.fit.standard_error("pixels_per_spacing") / *o.spacing;
-    out["pixels_per_sigma"] = {{"value", s}, {"standard_error", finite(e)}};
+    out["pixels_per_sigma"] = {{"value", s}, {"standard_error", number_or_null(e)}};
     text += fmt::format("  pixels per sigma     {:.6g} +- {:.2g}\n", s, e);
   }
   if (o.focal_px) {
@@ -75,7 +76,7 @@ void add_target(const CameraCalibration& o, nlohmann::json& d, std::string& text
       const std::string name = std::string("gradient_") + axis;
       const double tilt = std::atan(*o.focal_px * t.fit.value(name)) * 180 / M_PI,
                    e = *o.focal_px * t.fit.standard_error(name) * 180 / M_PI;
-      out[std::string("tilt_") + axis + "_deg"] = {{"value", tilt}, {"standard_error", finite(e)}};
+      out[std::string("tilt_") + axis + "_deg"] = {{"value", tilt}, {"standard_error", number_or_null(e)}};
       text += fmt::format("  camera's tilt in {}   {:.4g} +- {:.2g} degrees\n", axis, tilt, e);
     }
   }
@@ -132,8 +133,8 @@ struct Scale {
 Scale measured_scale(const MeasuredCamera& m) {
   if (m.by_walls) return {*m.by_walls, kScaleByWalls};
   if (m.census)
-    return {m.census->diameter, fmt::format("mean diameter of {} in {}", counted(m.census->sizes, "disc"),
-                                            counted(m.census->frames, "frame"))};
+    return {m.census->diameter, fmt::format("mean diameter of {} in {}", plural(m.census->sizes, "disc"),
+                                            plural(m.census->frames, "frame"))};
   throw InputError({.file = m.options.flags.stack, .key = {}},
                    "gives no scale: no beads are found, and cell.width or a side wall is missing.");
 }
@@ -204,8 +205,8 @@ void report_perspective(CalibrationResult& out, const calibration::SizeStatistic
                change_y = census.gradient_y.value * size.height,
                error_y = census.gradient_y.error * size.height;
   out.document["perspective"] = {
-      {"across", {{"value", finite(change_x)}, {"standard_error", finite(error_x)}}},
-      {"downwards", {{"value", finite(change_y)}, {"standard_error", finite(error_y)}}}};
+      {"across", {{"value", number_or_null(change_x)}, {"standard_error", number_or_null(error_x)}}},
+      {"downwards", {{"value", number_or_null(change_y)}, {"standard_error", number_or_null(error_y)}}}};
   out.text += fmt::format(
       "  beads grow by {:.2f} +- {:.2f} % from left to right, by {:.2f} +- {:.2f} % from top to bottom\n",
       100 * change_x, 100 * error_x, 100 * change_y, 100 * error_y);
@@ -224,7 +225,7 @@ void report_perspective(CalibrationResult& out, const calibration::SizeStatistic
 void report_scales(CalibrationResult& out, const MeasuredCamera& m) {
   nlohmann::json& d = out.document;
   const auto scale_line = [&](const char* what, const calibration::Estimate& e) {
-    d["scales"][what] = {{"value", e.value}, {"standard_error", finite(e.error)}};
+    d["scales"][what] = {{"value", e.value}, {"standard_error", number_or_null(e.error)}};
     out.text += fmt::format("  {:<10} {:.5f} +- {:.5f}\n", what, e.value, e.error);
   };
   out.text = "pixels per sigma\n";
@@ -237,7 +238,7 @@ void report_scales(CalibrationResult& out, const MeasuredCamera& m) {
   if (m.by_walls && m.census) {
     const calibration::Estimate &beads = m.census->diameter, &walls = *m.by_walls;
     const double apart = (beads.value - walls.value) / std::hypot(beads.error, walls.error);
-    d["scales"]["standard_errors_apart"] = finite(apart);
+    d["scales"]["standard_errors_apart"] = number_or_null(apart);
     out.text += fmt::format("  walls and diameters are {:.1f} standard errors apart\n", std::abs(apart));
     // A width in sigma is often the distance of the walls in px over the diameter in px.
     constexpr double kSame = 2e-3;

@@ -15,11 +15,11 @@
 #include "calibration/contact/contact_numbers.hpp"
 #include "calibration/contact/walton.hpp"
 #include "cli/calibrate.hpp"
-#include "cli/numbers.hpp"
+#include "cli/number_checks.hpp"
 #include "cli/stack_info.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
+#include "core/plural.hpp"
 #include "core/table.hpp"
 #include "sim/laws/linear_collision.hpp"
 #include "trajectory/formats/h5md_file.hpp"
@@ -84,14 +84,14 @@ BounceHeights bounce_heights(const BounceFlags& o) {
 /// The fitted gravity against that of the trajectory. \returns a note if the flights show another one,
 /// otherwise nothing \throws InputError if it is far off
 std::string check_gravity(const std::string& source, double stated, const calibration::BounceFit& fit) {
-  constexpr double kClear = 5, kOff = 0.01, kFar = 0.05;  // standard errors; of g
+  constexpr double kErrors = 5, kNotedShare = 0.01, kMaxShare = 0.05;  // standard errors; of g
   const double off = std::abs(fit.gravity / stated - 1);
-  if (off < kOff || off * stated < kClear * fit.gravity_error) return {};
+  if (off < kNotedShare || off * stated < kErrors * fit.gravity_error) return {};
   const std::string why = fmt::format(
       "the best gravity is {:.4g} +- {:.1g}, where it is {:g} in the trajectory: the bead may touch others "
       "between its impacts (--bead selects one), or the scale or the frame rate is wrong",
       fit.gravity, fit.gravity_error, stated);
-  if (off > kFar) throw InputError({.file = source, .key = {}}, why + ".");
+  if (off > kMaxShare) throw InputError({.file = source, .key = {}}, why + ".");
   return why;
 }
 
@@ -115,7 +115,7 @@ void run_bounce(const BounceFlags& o, const Common& common) {
     const double phase = o.phase.value_or(0);
     options.plate = [d = *drive, phase](double t) {
       const double theta = d.omega * t + phase;
-      return calibration::PlateAt{d.amplitude * std::sin(theta), d.amplitude * d.omega * std::cos(theta)};
+      return calibration::PlateState{d.amplitude * std::sin(theta), d.amplitude * d.omega * std::cos(theta)};
     };
   }
   calibration::BounceFit fit;
@@ -128,7 +128,7 @@ void run_bounce(const BounceFlags& o, const Common& common) {
           samples, [](const auto& s) { return !std::isfinite(s.time) || !std::isfinite(s.height); });
       empty > 0)
     fit.notes.push_back(
-        fmt::format("{} without a number {} left out", counted(empty, "row"), empty == 1 ? "was" : "were"));
+        fmt::format("{} without a number {} left out", plural(empty, "row"), empty == 1 ? "was" : "were"));
   if (heights.gravity && !o.gravity)
     if (const std::string why = check_gravity(o.source, *heights.gravity, fit); !why.empty())
       fit.notes.push_back(why);
@@ -137,7 +137,7 @@ void run_bounce(const BounceFlags& o, const Common& common) {
   out.measured.push_back({.name = "contact.wall.restitution",
                           .value = {fit.restitution},
                           .standard_error = {fit.restitution_error},
-                          .method = counted(fit.impacts.size(), "impact") + " of a bouncing bead",
+                          .method = plural(fit.impacts.size(), "impact") + " of a bouncing bead",
                           .data = data_hash(o.source)});
   nlohmann::json& d = out.document;
   d["source"] = o.source;
@@ -146,10 +146,11 @@ void run_bounce(const BounceFlags& o, const Common& common) {
   d["outliers"] = fit.outliers;
   d["rms_residual"] = fit.rms;
   d["gravity"] = {
-      {"value", fit.gravity}, {"standard_error", finite(fit.gravity_error)}, {"fitted", !o.gravity}};
-  d["drag"] = {{"value", fit.drag}, {"standard_error", finite(fit.drag_error)}, {"fitted", !o.no_drag}};
-  out.text = fmt::format("{} in {}, {}, rms {:.3g}\n", counted(fit.samples, "sample"),
-                         counted(fit.flights, "flight"), counted(fit.outliers, "outlier"), fit.rms);
+      {"value", fit.gravity}, {"standard_error", number_or_null(fit.gravity_error)}, {"fitted", !o.gravity}};
+  d["drag"] = {
+      {"value", fit.drag}, {"standard_error", number_or_null(fit.drag_error)}, {"fitted", !o.no_drag}};
+  out.text = fmt::format("{} in {}, {}, rms {:.3g}\n", plural(fit.samples, "sample"),
+                         plural(fit.flights, "flight"), plural(fit.outliers, "outlier"), fit.rms);
   out.text += o.gravity ? fmt::format("gravity: {:g}, as given\n", fit.gravity)
                         : fmt::format("gravity: {:.6g} +- {:.2g}\n", fit.gravity, fit.gravity_error);
   if (!o.no_drag)
@@ -160,7 +161,7 @@ void run_bounce(const BounceFlags& o, const Common& common) {
     d["impacts"].push_back({{"time", i.time},
                             {"speed", i.speed},
                             {"restitution", i.restitution},
-                            {"standard_error", finite(i.error)}});
+                            {"standard_error", number_or_null(i.error)}});
     out.text +=
         fmt::format("  {:<10.5g}  {:<12.5g}  {:.5f} +- {:.5f}\n", i.time, i.speed, i.restitution, i.error);
   }
@@ -221,14 +222,15 @@ void run_collisions(const CollisionFlags& o, const Common& common) {
   d["impacts"] = fit.impacts;
   d["outliers"] = fit.outliers;
   d["scatter"] = fit.scatter;
-  d["speed_slope"] = {{"value", finite(fit.slope)}, {"standard_error", finite(fit.slope_error)}};
+  d["speed_slope"] = {{"value", number_or_null(fit.slope)},
+                      {"standard_error", number_or_null(fit.slope_error)}};
   d["sticking"] = fit.sticking;
   d["sliding"] = fit.sliding;
   d["spins"] = found.spins;
   d["stride"] = found.stride;
   if (!found.spins) out.notes.emplace_back("the trajectory has no spins, so friction cannot be measured");
   out.text = fmt::format("{} collided between two frames, {} with a third body left out, {}\n",
-                         counted(found.pairs, "pair"), found.crowded, counted(fit.outliers, "outlier"));
+                         plural(found.pairs, "pair"), found.crowded, plural(fit.outliers, "outlier"));
   if (found.stride > 1)
     out.text += fmt::format(
         "every {}th frame is used: collisions last longer than the interval between frames\n", found.stride);
@@ -273,7 +275,7 @@ void run_numbers(const NumberFlags& o, const Common& common) {
     t_c = c.contact_time();
     s = {.k_n = *o.k_n, .gamma_n = *o.gamma_n, .c_n = *o.gamma_n * o.m_eff};
   }
-  const nlohmann::json d = {{"m_eff", o.m_eff}, {"restitution", e},     {"contact_time", finite(t_c)},
+  const nlohmann::json d = {{"m_eff", o.m_eff}, {"restitution", e},     {"contact_time", number_or_null(t_c)},
                             {"k_n", s.k_n},     {"gamma_n", s.gamma_n}, {"c_n", s.c_n}};
   std::string text;
   if (!std::isfinite(t_c))

@@ -26,6 +26,7 @@
 #include "core/constants.hpp"
 #include "core/error.hpp"
 #include "core/in_parallel.hpp"
+#include "core/json_text.hpp"
 #include "sim/run/simulation.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "trajectory/formats/h5md_file.hpp"
@@ -334,14 +335,14 @@ void tell_observables(const Question& question, const calibration::Inference& in
     out.document["observables"].push_back({{"name", m.name},
                                            {"measured", value},
                                            {"error", error},
-                                           {"predicted", finite(predicted)},
-                                           {"scatter", finite(scatter)}});
+                                           {"predicted", number_or_null(predicted)},
+                                           {"scatter", number_or_null(scatter)}});
     out.text += fmt::format("{:<20}  {:<12.5g}  {:<12.5g}  {:.2g}\n", m.name, value, predicted, scatter);
   }
 }
 
 void tell_curves(const Question& question, const calibration::Inference& inference, CalibrationResult& out) {
-  constexpr double kFar = 3;
+  constexpr double kMaxMisfit = 3;
   for (const ComparedCurve& c : question.curves) {
     const auto first = inference.predicted.begin() + static_cast<std::ptrdiff_t>(c.first);
     const std::vector<double> predicted = c.components.curve(
@@ -354,7 +355,7 @@ void tell_curves(const Question& question, const calibration::Inference& inferen
                                       {"mean", c.components.mean},
                                       {"misfit", misfit},
                                       {"misfit_of_runs", c.components.left_out}});
-    if (misfit > kFar * c.components.left_out)
+    if (misfit > kMaxMisfit * c.components.left_out)
       out.notes.push_back(
           fmt::format("{} has a shape that no run has: its residual is {:.2g}, that of the curves of the "
                       "runs {:.2g} (rms)",

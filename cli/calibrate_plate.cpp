@@ -11,10 +11,11 @@
 #include "calibration/drive/drive_fit.hpp"
 #include "calibration/drive/drive_fit_figure.hpp"
 #include "cli/calibrate.hpp"
-#include "cli/numbers.hpp"
+#include "cli/number_checks.hpp"
 #include "core/atomic_file.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
+#include "core/json_text.hpp"
+#include "core/plural.hpp"
 #include "imaging/stack/frame_source.hpp"
 
 namespace twincell::cli {
@@ -47,12 +48,12 @@ void write_phases(const std::string& path, const calibration::DriveFit& lock) {
 }
 
 std::string list_of(const calibration::DriveFit& lock, calibration::FrameLock kind) {
-  constexpr int kMostNamed = 12;
+  constexpr int kMaxNamed = 12;
   std::string s;
   int n = 0;
   for (std::size_t f = 0; f < lock.frames.size(); ++f)
-    if (lock.frames[f].lock == kind && ++n <= kMostNamed) s += fmt::format("{}{}", n > 1 ? ", " : "", f);
-  return n > kMostNamed ? s + ", ..." : s;
+    if (lock.frames[f].lock == kind && ++n <= kMaxNamed) s += fmt::format("{}{}", n > 1 ? ", " : "", f);
+  return n > kMaxNamed ? s + ", ..." : s;
 }
 
 calibration::DriveFit lock_of(const PlateOptions& o, const imaging::CellDescription& cell,
@@ -101,7 +102,7 @@ void add_quantities(CalibrationResult& out, const MeasuredPlate& m) {
     out.measured.push_back(
         {.name = name, .value = {value}, .standard_error = {error}, .method = method, .data = m.data});
   };
-  const std::string harmonic = "harmonic fit to the plate's edge in " + counted(lock.locked, "frame");
+  const std::string harmonic = "harmonic fit to the plate's edge in " + plural(lock.locked, "frame");
   if (lock.frames_per_cycle > 0) {
     add("camera.frames_per_cycle", lock.frames_per_cycle, 0, "the nearest whole number to camera.period");
     add("camera.first_phase", lock.first_phase, 0, harmonic);
@@ -149,7 +150,7 @@ void describe_motion(nlohmann::json& d, const MeasuredPlate& m) {
       {"rms_residual_px", lock.rms},
       {"blur_px", m.geometry.blur_px},
       {"rotation_deg", m.geometry.rotation_deg},
-      {"p_sinusoidal", lock.p_sinusoidal ? finite(*lock.p_sinusoidal) : nlohmann::json()},
+      {"p_sinusoidal", lock.p_sinusoidal ? number_or_null(*lock.p_sinusoidal) : nlohmann::json()},
       {"sinusoidal", lock.p_sinusoidal ? nlohmann::json(*lock.p_sinusoidal >= 0.01) : nlohmann::json()},
       {"jitter_limit_frames", lock.jitter_limit}};
   if (m.rate)
@@ -169,9 +170,9 @@ void describe_frames(nlohmann::json& d, const MeasuredPlate& m) {
     d["per_frame"].push_back({{"frame", f},
                               {"tick", lock.frames[f].tick},
                               {"phase", lock.frames[f].cycles - std::floor(lock.frames[f].cycles)},
-                              {"height_px", finite(m.geometry.heights[f].height_px)},
-                              {"error_px", finite(m.geometry.heights[f].sigma_px)},
-                              {"residual_px", finite(lock.frames[f].residual)},
+                              {"height_px", number_or_null(m.geometry.heights[f].height_px)},
+                              {"error_px", number_or_null(m.geometry.heights[f].sigma_px)},
+                              {"residual_px", number_or_null(lock.frames[f].residual)},
                               {"lock", kLocks[static_cast<std::size_t>(lock.frames[f].lock)]}});
   for (const imaging::FrameStretch& s : lock.out_of_lock_stretches)
     d["frames"]["without_phase"].push_back({s.first, s.last});
@@ -204,7 +205,7 @@ void compare_acceleration(CalibrationResult& out, const MeasuredPlate& m,
                        std::pow(m.scale->error.value_or(0) / m.scale->value, 2) + std::pow(2 * e / f, 2));
   const double z = (seen - v.acceleration) / std::hypot(error, v.acceleration_error);
   out.document["accelerometer"]["acceleration_difference"] = {{"m_s2", seen - v.acceleration},
-                                                              {"standard_errors", finite(z)}};
+                                                              {"standard_errors", number_or_null(z)}};
   out.text += fmt::format("  A omega^2: camera {:.5g} +- {:.2g} m/s^2, {:.1f} standard errors apart\n", seen,
                           error, z);
 }
@@ -225,7 +226,7 @@ void compare_with(const calibration::VibrationTable& vibration, CalibrationResul
   }
   const double apart = m.frequency_hz() - v.frequency_hz;
   const double z = apart / std::hypot(m.frequency_error_hz(), v.frequency_error);
-  d["frequency_difference"] = {{"hz", apart}, {"standard_errors", finite(z)}};
+  d["frequency_difference"] = {{"hz", apart}, {"standard_errors", number_or_null(z)}};
   out.text +=
       fmt::format("  frequency: camera - accelerometer = {:.2g} Hz, {:.1f} standard errors\n", apart, z);
   if (m.scale && m.cell.scale.sigma_m) compare_acceleration(out, m, v);

@@ -11,6 +11,7 @@
 #include "cli/calibrate.hpp"
 #include "cli/stack_info.hpp"
 #include "core/error.hpp"
+#include "core/json_text.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell::cli {
@@ -94,9 +95,9 @@ void of_stack(const CalibrateFlags& flags, const Common& common) {
                                err("tilt_right"), method, data));
   out.document["stack"] = flags.stack;
   out.document["walls"] = {
-      {"left", {{"x_px", g.fit.value("x_left")}, {"standard_error", finite(err("x_left"))}}},
-      {"right", {{"x_px", g.fit.value("x_right")}, {"standard_error", finite(err("x_right"))}}},
-      {"width_px", {{"value", width}, {"standard_error", finite(error)}}},
+      {"left", {{"x_px", g.fit.value("x_left")}, {"standard_error", number_or_null(err("x_left"))}}},
+      {"right", {{"x_px", g.fit.value("x_right")}, {"standard_error", number_or_null(err("x_right"))}}},
+      {"width_px", {{"value", width}, {"standard_error", number_or_null(error)}}},
       {"foot_row_px", g.plate_row}};
   out.text = fmt::format(
       "left wall at {:.3f} +- {:.3f} px, right wall at {:.3f} +- {:.3f} px (at row {:.2f}, undistorted "

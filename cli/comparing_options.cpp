@@ -49,21 +49,14 @@ twin::ComparingOptions comparing_options(const ComparingFlags& flags, const Comm
   return options;
 }
 
-twin::ProgressOf progress_bars(const Common& common) {
-  return [&common](const std::string& stage) -> std::unique_ptr<Progress> {
-    return std::make_unique<ProgressBar>(common, stage);
-  };
-}
-
-NotedComparison compare_sides(const Common& common, const twin::ComparingOptions& options) {
-  NotedComparison noted;
-  noted.comparison = twin::compare_runs(options, progress_bars(common), noted.notes);
+twin::NotedComparison compare_sides(const Common& common, const twin::ComparingOptions& options) {
+  twin::NotedComparison noted = twin::compare_runs(options, progress_bars(common));
   for (const std::string& sentence : noted.notes) note(common, sentence);
   return noted;
 }
 
 void report_comparison(const Common& common, const twin::ComparingOptions& options,
-                       const NotedComparison& noted, const std::filesystem::path& folder,
+                       const twin::NotedComparison& noted, const std::filesystem::path& folder,
                        nlohmann::json result, const std::string& result_text) {
   Provenance provenance = common.provenance();
   for (const auto* files : {&options.experiments, &options.simulations, &options.sweeps})

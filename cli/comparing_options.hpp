@@ -35,22 +35,13 @@ void add_comparing_flags(CLI::App& verb, ComparingFlags& flags);
 /// \throws ConfigError, InputError
 twin::ComparingOptions comparing_options(const ComparingFlags& flags, const Common& common);
 
-/// Returns a function with which the library makes a progress bar for each stage.
-twin::ProgressOf progress_bars(const Common& common);
-
-/// A comparison with the sentences that the user should read.
-struct NotedComparison {
-  analysis::Comparison comparison;
-  std::vector<std::string> notes;
-};
-
 /// Compares the runs and prints the notes. \throws as compare_runs
-NotedComparison compare_sides(const Common& common, const twin::ComparingOptions& options);
+twin::NotedComparison compare_sides(const Common& common, const twin::ComparingOptions& options);
 
 /// Writes the report of a comparison into `folder` and prints the result. \param result, result_text results
 /// of the verb itself, printed after those of the comparison, as JSON and as text
 void report_comparison(const Common& common, const twin::ComparingOptions& options,
-                       const NotedComparison& noted, const std::filesystem::path& folder,
+                       const twin::NotedComparison& noted, const std::filesystem::path& folder,
                        nlohmann::json result, const std::string& result_text);
 
 }  // namespace twincell::cli

@@ -261,8 +261,8 @@ analysis::Figure figure(const Measured& m) {
        {"split", analysis::colours::kVermilion, analysis::figure_style::kTriangle}}};
   analysis::Figure f{
       .name = "work_precision", .title = "Accuracy against computing time", .width = 720, .height = 760};
-  analysis::figure_style::Axis time{.label = "processor time, µs per bead and t_0", .logarithmic = true};
-  std::array<analysis::figure_style::Axis, 3> errors;
+  analysis::figure_style::PlotAxis time{.label = "processor time, µs per bead and t_0", .logarithmic = true};
+  std::array<analysis::figure_style::PlotAxis, 3> errors;
   errors.fill({.label = "error", .logarithmic = true});
   std::vector<double> stiffnesses;
   for (const WorkPrecision& w : m.all)

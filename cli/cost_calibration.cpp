@@ -10,6 +10,7 @@
 #include "analysis/report/gnuplot_text.hpp"
 #include "calibration/accuracy/calibration_cost.hpp"
 #include "cli/calibrate.hpp"
+#include "core/json_text.hpp"
 
 namespace twincell::cli {
 namespace {
@@ -27,8 +28,8 @@ nlohmann::json as_json(const calibration::CalibrationCost& cost) {
     d["numbers"].push_back({{"name", p.name},
                             {"unit", p.unit},
                             {"frames", p.frames},
-                            {"standard_error", finite(p.stated)},
-                            {"actual_error", finite(p.actual)}});
+                            {"standard_error", number_or_null(p.stated)},
+                            {"actual_error", number_or_null(p.actual)}});
   for (const calibration::CalibrationTime& t : cost.times)
     d["times"].push_back(
         {{"frames", t.frames}, {"edges_s", t.edges_s}, {"fit_s", t.fit_s}, {"beads_s", t.beads_s}});
@@ -74,7 +75,7 @@ analysis::Figure figure(const calibration::CalibrationCost& cost) {
                      .title = "Accuracy of calibration against number of frames",
                      .width = 720,
                      .height = 460};
-  analysis::figure_style::Axis frames{.label = "frames", .logarithmic = true},
+  analysis::figure_style::PlotAxis frames{.label = "frames", .logarithmic = true},
       error{.label = "standard error, in the unit of the key", .logarithmic = true};
   std::string clauses;
   int index = 0;

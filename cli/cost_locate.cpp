@@ -224,7 +224,7 @@ class Panels {
   /// Commands of a panel. \param clauses more clauses
   [[nodiscard]] std::string plot(std::size_t panel, const std::string& title, int beads,
                                  const std::string& more = {}) const {
-    analysis::figure_style::Axis time = time_;
+    analysis::figure_style::PlotAxis time = time_;
     time.label = fmt::format("processor time, ms per frame of {} beads", beads);
     return analysis::figure_style::axes(time, errors_[panel]) +
            analysis::figure_style::panel_title("abc"[panel], title) +
@@ -235,8 +235,8 @@ class Panels {
   void add(const std::string& clause) { clauses_.back() += (clauses_.back().empty() ? "" : ", ") + clause; }
   std::string name_, data_;
   std::vector<std::string> clauses_;
-  analysis::figure_style::Axis time_{.label = {}, .logarithmic = true};
-  std::vector<analysis::figure_style::Axis> errors_;  ///< of each panel
+  analysis::figure_style::PlotAxis time_{.label = {}, .logarithmic = true};
+  std::vector<analysis::figure_style::PlotAxis> errors_;  ///< of each panel
   int index_ = 0;
 };
 

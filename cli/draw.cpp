@@ -12,8 +12,8 @@
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
-#include "core/counted.hpp"
 #include "core/output_rules.hpp"
+#include "core/plural.hpp"
 #include "imaging/drawing/drawing.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
@@ -57,7 +57,7 @@ void write_page(const H5mdReader& trajectory, const DrawOptions& o, const Common
                              {"frames", page.frames},
                              {"megabytes", megabytes},
                              {"colour", o.colour}};
-  std::string text = fmt::format("{}, {:.3g} MB", counted(page.frames, "frame"), megabytes);
+  std::string text = fmt::format("{}, {:.3g} MB", plural(page.frames, "frame"), megabytes);
   add_range(o, page.range, document, text);
   print_result(common, document, fmt::format("{}\n{}\n", text, o.job.output.string()));
 }
@@ -73,7 +73,7 @@ void run(DrawOptions& o, const Common& common) {
   const auto n = static_cast<std::int64_t>(trajectory.n_frames());
   if (o.job.frames.end > n)
     note(common, fmt::format("--frames {} reaches beyond the end of {}, which has {}.", o.frames,
-                             o.trajectory, counted(trajectory.n_frames(), "frame")));
+                             o.trajectory, plural(trajectory.n_frames(), "frame")));
   if (o.colour != kPlain) {
     const analysis::Colouring& colouring = analysis::colouring_named(o.colour, trajectory, "--colour");
     o.job.colours.name = colouring.word;
@@ -98,7 +98,7 @@ void run(DrawOptions& o, const Common& common) {
                              {"height_px", drawn.size.height},
                              {"colour", o.colour}};
   std::string text =
-      fmt::format("{}, {} x {} px", counted(drawn.frames, "frame"), drawn.size.width, drawn.size.height);
+      fmt::format("{}, {} x {} px", plural(drawn.frames, "frame"), drawn.size.width, drawn.size.height);
   add_range(o, drawn.range, document, text);
   print_result(common, document, fmt::format("{}\n{}\n", text, o.job.output.string()));
 }

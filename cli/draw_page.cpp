@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "analysis/report/page_parts.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/escape.hpp"
+#include "core/plural.hpp"
 #include "imaging/camera/movie.hpp"
 #include "trajectory/boundary_words.hpp"
 
@@ -121,7 +121,7 @@ void check(const TrajectorySource& source, const imaging::DrawJob& job, std::siz
   const std::size_t beads = source.info().n_beads;
   const double size = bytes_per_bead(source, job) * static_cast<double>(beads) * static_cast<double>(frames);
   if (size > kLargestPage)
-    refuse_size(source, fmt::format("{} of {}", counted(frames, "frame"), counted(beads, "bead")), size,
+    refuse_size(source, fmt::format("{} of {}", plural(frames, "frame"), plural(beads, "bead")), size,
                 job.frames.step);
 }
 
@@ -241,8 +241,8 @@ DrawnPage page_of(const TrajectorySource& source, const imaging::DrawJob& job, c
                       of_contact * static_cast<double>(contacts.size());
   if (size > kLargestPage)
     refuse_size(source,
-                fmt::format("{} of {} with {}", counted(indices.size(), "frame"),
-                            counted(info.n_beads, "bead"), counted(contacts.size(), "contact")),
+                fmt::format("{} of {} with {}", plural(indices.size(), "frame"), plural(info.n_beads, "bead"),
+                            plural(contacts.size(), "contact")),
                 size, job.frames.step);
   DrawnPage page{.html = {}, .frames = indices.size(), .range = {numbers.low(), numbers.high()}};
   if (job.colours.range) page.range = *job.colours.range;
@@ -273,8 +273,8 @@ DrawnPage page_of(const TrajectorySource& source, const imaging::DrawJob& job, c
       "<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width, "
       "initial-scale=1\">\n<title>{}</title><style>{}{}</style></head><body>\n<header><h1>{}</h1></header>\n",
       title, analysis::page_style(), embedded::draw_page_css, title);
-  page.html += fmt::format("<p id=\"summary\">{}, {}.</p>\n", counted(indices.size(), "frame"),
-                           counted(info.n_beads, "bead"));
+  page.html += fmt::format("<p id=\"summary\">{}, {}.</p>\n", plural(indices.size(), "frame"),
+                           plural(info.n_beads, "bead"));
   page.html += kBody;
   page.html += "<script type=\"application/json\" id=\"data\">" + analysis::json_script_text(data) +
                "</script>\n<script>" + analysis::script_text(embedded::draw_page_js) +

@@ -12,9 +12,9 @@
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
-#include "core/counted.hpp"
 #include "core/escape.hpp"
 #include "core/output_rules.hpp"
+#include "core/plural.hpp"
 #include "sim/lammps/export_lammps.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "trajectory/foreign/export_trajectory.hpp"
@@ -134,8 +134,8 @@ void export_beads(const ExportOptions& o, const Common& common) {
        {"beads", trajectory.info().n_beads},
        {"length_unit", units.length_unit},
        {"time_unit", units.time_unit}},
-      fmt::format("{} of {}, lengths in {}, times in {}\n{}\n", counted(frames, "frame"),
-                  counted(trajectory.info().n_beads, "bead"), units.length_unit, units.time_unit, o.output));
+      fmt::format("{} of {}, lengths in {}, times in {}\n{}\n", plural(frames, "frame"),
+                  plural(trajectory.info().n_beads, "bead"), units.length_unit, units.time_unit, o.output));
 }
 
 void run(const ExportOptions& o, const Common& common) {

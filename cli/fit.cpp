@@ -11,9 +11,9 @@
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
+#include "core/plural.hpp"
 
 namespace twincell::cli {
 namespace {
@@ -31,7 +31,7 @@ Product fit_folder() {
 std::string text_of(const calibration::CurveFit& fit) {
   const calibration::FitReport& report = fit.fit;
   std::string text = fmt::format("{}: {}   ({})\n{} used", fit.law->name, fit.law->formula, fit.law->source,
-                                 counted(fit.n_used, "point"));
+                                 plural(fit.n_used, "point"));
   if (fit.n_outside > 0) text += fmt::format(", {} outside the window", fit.n_outside);
   if (fit.n_zero > 0)
     text += fit.likelihood ? fmt::format(", {} of them zero", fit.n_zero)
@@ -53,8 +53,8 @@ std::string text_of(const calibration::CurveFit& fit) {
   text += fmt::format("rms residual: {:.4g}\n", report.rms());
   if (std::isfinite(fit.runs.p))
     text +=
-        fmt::format("residual signs: {}, {} above and {} below, p = {:.3g}\n", counted(fit.runs.runs, "run"),
-                    counted(fit.runs.positive, "point"), fit.runs.negative, fit.runs.p);
+        fmt::format("residual signs: {}, {} above and {} below, p = {:.3g}\n", plural(fit.runs.runs, "run"),
+                    plural(fit.runs.positive, "point"), fit.runs.negative, fit.runs.p);
   if (!fit.law->nested.empty() && std::isfinite(fit.p_nested))
     text += fmt::format("against {}: p = {:.3g}\n", fit.law->nested, fit.p_nested);
   text += fmt::format("condition number: {:.3g}\n", report.condition);

@@ -10,17 +10,17 @@
 #include <map>
 #include <memory>
 
-#include "cli/import_doubts.hpp"
+#include "cli/import_checks.hpp"
 #include "cli/named_columns.hpp"
 #include "cli/output.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
-#include "imaging/cell/implausible.hpp"
+#include "core/plural.hpp"
 #include "trajectory/foreign/foreign_trajectory.hpp"
 #include "trajectory/formats/h5md_file.hpp"
+#include "trajectory/unit_checks.hpp"
 
 namespace twincell::cli {
 
@@ -81,7 +81,7 @@ void note_doubts(const Common& common, const ForeignTrajectory& source, double s
   if (source.n_beyond() > 0)
     note(common, fmt::format("{} of the first frame {} beyond the side walls of the cell, which is {:.4g} "
                              "bead diameters wide (--cell-origin, --cell-width).",
-                             counted(source.n_beyond(), "bead"), source.n_beyond() == 1 ? "lies" : "lie",
+                             plural(source.n_beyond(), "bead"), source.n_beyond() == 1 ? "lies" : "lie",
                              source.info().box.upper.x()));
   if (const double missing = source.missing_frames(); missing > 0)
     note(common,
@@ -91,21 +91,26 @@ void note_doubts(const Common& common, const ForeignTrajectory& source, double s
   if (source.replaces_times()) note(common, "the times of the file are replaced by those of --timestep.");
 }
 
-void run(ImportOptions& o, const Common& common) {
-  if (is_trajectory(o.file))
-    throw ConfigError({o.file, 0, 0, ""},
-                      "this is a trajectory (H5MD) already; analyze, draw and export read it as it is.");
+/// Enters the options that are not of CLI11's types. \throws ConfigError for those without effect
+void set_foreign_options(ImportOptions& o, const ForeignFormat& format) {
   if (!o.origin.empty()) {
     Vec3& corner = o.foreign.origin.emplace(Vec3::Zero());
     for (std::size_t k = 0; k < o.origin.size(); ++k) corner[static_cast<int>(k)] = o.origin[k];
   }
-  const ForeignFormat& format =
-      o.format.empty() ? format_of_file(o.file) : foreign_format(o.format, "--format");
   o.foreign.table_columns = named_columns(o.columns);
   const bool is_table = format.word == std::string_view("csv");
   if (!is_table && (!o.columns.empty() || o.foreign.y_up))
     throw ConfigError({"", 0, 0, o.foreign.y_up ? "--y-up" : "--columns"},
                       "applies to tables (--format csv).");
+}
+
+void run(ImportOptions& o, const Common& common) {
+  if (is_trajectory(o.file))
+    throw ConfigError({o.file, 0, 0, ""},
+                      "this is a trajectory (H5MD) already; analyze, draw and export read it as it is.");
+  const ForeignFormat& format =
+      o.format.empty() ? format_of_file(o.file) : foreign_format(o.format, "--format");
+  set_foreign_options(o, format);
   ProgressBar reading(common, "reading");
   const ForeignTrajectory source(o.file, format, o.foreign, reading);
   require_sigma(o, source);
@@ -122,7 +127,7 @@ void run(ImportOptions& o, const Common& common) {
   if (info.box.dimension == 3 && source.is_flat())
     note(common, "all beads are in one plane in every frame; for a two-dimensional system: --dimension 2.");
   note_doubts(common, source, o.foreign.sigma);
-  for (const std::string& doubt : imaging::implausible_numbers(imaging::shaken_cell(info.scale, info.drive)))
+  for (const std::string& doubt : implausible_numbers(shaken_cell(info.scale, info.drive)))
     note(common, doubt);
   for (const std::string& doubt : watched.doubts()) note(common, doubt);
   // Some programs count from 1, which the summary says; gaps in the numbers are no such habit.
@@ -138,23 +143,15 @@ void run(ImportOptions& o, const Common& common) {
        {"beads", info.n_beads},
        {"source", info.source},
        {"missing_beads", info.columns.identity}},
-      fmt::format("{} of {}{}\n{}{}\n", counted(source.n_frames(), "frame"), counted(info.n_beads, "bead"),
+      fmt::format("{} of {}{}\n{}{}\n", plural(source.n_frames(), "frame"), plural(info.n_beads, "bead"),
                   info.columns.identity ? ", not all of them in every frame" : "",
                   numbers.empty() ? "" : numbers + "\n", o.output));
 }
 
-}  // namespace
-
-void add_import(CLI::App& program, Common& common) {
-  auto o = std::make_shared<ImportOptions>();
-  CLI::App& verb =
-      add_verb(program, common, "import",
-               "Convert the beads of another program, such as a LAMMPS dump or a table of trackpy, to a "
-               "trajectory. Writes the trajectory file, in units of the bead diameter and g.",
-               "twincell import dump.lammpstrj -o lammps.h5 --timestep 4.44556610e-5 "
-               "--drive-amplitude 1.5 --drive-omega 1 --frames-per-cycle 4");
-  ForeignOptions& l = o->foreign;
-  verb.add_option("file", o->file, "File of the other program")->required();
+/// The file, its format, the output and what the file does not state of its beads.
+void add_file_options(CLI::App& verb, Common& common, ImportOptions& o) {
+  ForeignOptions& l = o.foreign;
+  verb.add_option("file", o.file, "File of the other program")->required();
   std::string formats;
   std::vector<std::string> words;
   for (const ForeignFormat* format : foreign_formats())
@@ -163,19 +160,19 @@ void add_import(CLI::App& program, Common& common) {
       words.emplace_back(format->word);
     }
   verb.add_option(
-          "--format", o->format,
+          "--format", o.format,
           fmt::format("Format (docs/formats.md). {}. Default: by the ending of the name, else lammps-dump",
                       formats))
       ->check(CLI::IsMember(words))
       ->option_text("WORD");
   verb.add_option(
-          "--columns", o->columns,
+          "--columns", o.columns,
           "Names of the columns of a table where they differ, as QUANTITY=NAME: frame, particle, x, y, z, "
           "time, radius, diameter, tracer, bead_mass, vx, vy, vz, sigma_x, sigma_y, sigma_z")
       ->option_text("QUANTITY=NAME ...");
   verb.add_flag("--y-up", l.y_up, "y of a table increases upwards; default: downwards, as in a picture");
   writes(common, verb,
-         verb.add_option("-o,--output", o->output, "Trajectory file to write (H5MD)")->required(),
+         verb.add_option("-o,--output", o.output, "Trajectory file to write (H5MD)")->required(),
          Product::trajectory());
   verb.add_option(
           "--source", l.source,
@@ -187,27 +184,38 @@ void add_import(CLI::App& program, Common& common) {
                   "Dimension of the system; 2: the plane (x, y) with y upwards; 3: z upwards")
       ->check(CLI::IsMember({2, 3}))
       ->capture_default_str();
+}
+
+void add_unit_options(CLI::App& verb, ImportOptions& o) {
+  ForeignOptions& l = o.foreign;
   verb.add_option("--timestep", l.timestep,
                   "Length of a step, in the time unit of the file; required unless the file contains times. "
                   "All lengths and times below are in the units of the file.");
-  o->sigma =
+  o.sigma =
       verb.add_option(
               "--sigma", l.sigma,
               "Bead diameter in the unit of the file, the unit of length of the trajectory; required if "
               "the file states a unit such as mm")
           ->capture_default_str();
   verb.add_option("--gravity", l.gravity, "Acceleration of gravity g")->capture_default_str();
-  verb.add_option("--cell-origin", o->origin,
+}
+
+void add_cell_options(CLI::App& verb, ImportOptions& o) {
+  ForeignOptions& l = o.foreign;
+  verb.add_option("--cell-origin", o.origin,
                   "Lower left inside corner of the cell, with the plate at its mean height: x y [z]; "
                   "default: 0, along a period its beginning")
       ->expected(2, 3)
       ->delimiter(',');
   verb.add_option("--cell-width", l.width,
                   "Distance of the side walls; default: up to the end of the box of the file");
+  former_option(verb, "--origin", "--cell-origin");
+}
+
+void add_drive_options(CLI::App& verb, ForeignOptions& l) {
   verb.add_option("--drive-amplitude", l.drive.amplitude,
                   "Amplitude A of the plate; without any drive option the drive is unknown");
   verb.add_option("--drive-omega", l.drive.omega, "Angular frequency omega = 2 pi f of the plate");
-  former_option(verb, "--origin", "--cell-origin");
   former_option(verb, "--drive-frequency", "--drive-omega, with omega = 2 pi f");
   verb.add_option("--drive-gamma", l.drive.gamma, "Drive strength Gamma = A omega^2/g");
   verb.add_option(
@@ -223,10 +231,30 @@ void add_import(CLI::App& program, Common& common) {
           "--phase-of-step-zero", l.phase_of_step_zero,
           "Drive phase at step 0, as a fraction of a cycle; 0.75 for a wall that wiggles from step 0 on")
       ->capture_default_str();
+}
+
+void add_bead_options(CLI::App& verb, ForeignOptions& l) {
   verb.add_option("--bead-mass", l.bead_mass,
                   "Bead mass m, the unit of the column mass; default: masses are not read");
   verb.add_option("--tracer-type", l.tracer_type,
                   "Type that marks tracers; default: those of the column tracer of a table, otherwise none");
+}
+
+}  // namespace
+
+void add_import(CLI::App& program, Common& common) {
+  auto o = std::make_shared<ImportOptions>();
+  CLI::App& verb =
+      add_verb(program, common, "import",
+               "Convert the beads of another program, such as a LAMMPS dump or a table of trackpy, to a "
+               "trajectory. Writes the trajectory file, in units of the bead diameter and g.",
+               "twincell import dump.lammpstrj -o lammps.h5 --timestep 4.44556610e-5 "
+               "--drive-amplitude 1.5 --drive-omega 1 --frames-per-cycle 4");
+  add_file_options(verb, common, *o);
+  add_unit_options(verb, *o);
+  add_cell_options(verb, *o);
+  add_drive_options(verb, o->foreign);
+  add_bead_options(verb, o->foreign);
   verb.callback([o, &common] { run(*o, common); });
 }
 

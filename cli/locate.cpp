@@ -12,14 +12,14 @@
 #include "cli/locate_view.hpp"
 #include "cli/located_frames.hpp"
 #include "cli/locating_options.hpp"
-#include "cli/numbers.hpp"
+#include "cli/number_checks.hpp"
 #include "cli/output.hpp"
 #include "cli/settings_table.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/truth_options.hpp"
 #include "cli/verb.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
+#include "core/plural.hpp"
 #include "imaging/benchmark/score.hpp"
 #include "imaging/preprocess/open_flattened.hpp"
 #include "imaging/settings/configure_locator.hpp"
@@ -176,7 +176,7 @@ void run(LocateOptions& o, const Common& common) {
   if (nlohmann::json used = imaging::restrictions(o.locating); !used.is_null())
     document["restrictions"] = std::move(used);
 
-  std::string text = fmt::format("{}, {}{}\n", counted(n, "frame"), counted(located_frames.beads(), "bead"),
+  std::string text = fmt::format("{}, {}{}\n", plural(n, "frame"), plural(located_frames.beads(), "bead"),
                                  common.verbose ? "" : "; -v prints each frame");
   if (common.verbose) text += located_frames.lines();
   text += located_frames.unproven_motion();
@@ -222,7 +222,7 @@ void add_locate(CLI::App& program, Common& common) {
       verb.add_option("--view", o->view,
                       fmt::format("Page to write (HTML), which opens offline: the first {} frames with found "
                                   "beads and dropped candidates, and what other settings would keep",
-                                  LocateView::kMostFrames)),
+                                  LocateView::kMaxFrames)),
       locate_page());
   former_option(verb, "--overlay-frame", "--frame");
   verb.add_option(

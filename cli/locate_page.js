@@ -48,7 +48,7 @@
       const own = list.map(c => alone(c, set, set.diameters, set.judge.min_score));
       const fixed = list.map((c, k) => c[VERDICT] !== kBead && c[VERDICT] !== own[k] && !(c[VERDICT] === kOverlaps && own[k] === kBead));
       // Dropped by the evidence of the picture, which is examined only if no diameter is stated.
-      const unlike = list.map((c, k) => set.judge.drop_unlike && c[VERDICT] === kUnexplained && own[k] === kBead);
+      const unlike = list.map((c, k) => set.judge.drop_outliers && c[VERDICT] === kUnexplained && own[k] === kBead);
       const again = own.map((v, k) => fixed[k] ? list[k][VERDICT] : v);
       forbidOverlaps(list, again, set);
       list.forEach((c, k) => { if (c[VERDICT] === kOverlaps && again[k] === kBead) fixed[k] = true; });

@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostOthers = 3;
+constexpr std::size_t kMaxOthers = 3;
 
 json rounded(double value, int decimals) {
   if (!std::isfinite(value)) return nullptr;
@@ -79,7 +79,7 @@ json judge_json(const imaging::LocatorOptions& o) {
           {"min_interior", profile ? json(nullptr) : json(o.judge.min_interior)},
           {"min_score", o.judge.min_score},
           {"max_overlap", o.judge.max_overlap},
-          {"drop_unlike", o.judge.drop_unlike}};
+          {"drop_outliers", o.judge.drop_outliers}};
 }
 
 constexpr std::string_view kBody = R"(
@@ -138,10 +138,10 @@ LocateView::LocateView(const imaging::LocatingRequest& request, const imaging::R
   const bool bright = locator.preprocess.bright;
   const auto store = [&](const imaging::FoundSettings& settings) {
     stored_.push_back({.options = imaging::completed(settings, given)});
-    stored_.back().options.judge.drop_unlike = false;  // their command line states the diameter
+    stored_.back().options.judge.drop_outliers = false;  // their command line states the diameter
     return stored_.size() - 1;
   };
-  const std::size_t none = choice.tried.size() + kMostOthers + 1;
+  const std::size_t none = choice.tried.size() + kMaxOthers + 1;
   index_of_.assign(choice.tried.size(), none);
   if (!index_of_.empty()) index_of_[0] = 0;
   // The sliders need the other polarity, so the best settings with it come first.
@@ -155,12 +155,12 @@ LocateView::LocateView(const imaging::LocatingRequest& request, const imaging::R
     other.bright = !bright;
     store(other);
   }
-  for (std::size_t k = 1; k < choice.tried.size() && stored_.size() <= kMostOthers; ++k)
+  for (std::size_t k = 1; k < choice.tried.size() && stored_.size() <= kMaxOthers; ++k)
     if (index_of_[k] == none) index_of_[k] = store(choice.tried[k].settings);
 }
 
 void LocateView::add(std::int64_t number, const cv::Mat& grey, const imaging::Located& located) {
-  if (pictures_.size() >= kMostFrames) return;
+  if (pictures_.size() >= kMaxFrames) return;
   const imaging::EncodedFrame picture = imaging::encoded_frame(grey);
   pictures_.push_back({{"number", number},
                        {"x", region_.corner().x},

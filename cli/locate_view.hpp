@@ -27,13 +27,13 @@ inline Product locate_page() {
 /// are located here, so a frame costs up to four times as much as without the page.
 class LocateView {
  public:
-  static constexpr std::size_t kMostFrames = 12;
+  static constexpr std::size_t kMaxFrames = 12;
 
   /// \pre `region` outlives this \param locator complete options of the run \param choice the settings tried
   LocateView(const imaging::LocatingRequest& request, const imaging::Region& region,
              const imaging::LocatorOptions& locator, const imaging::SettingsChoice& choice);
 
-  /// Adds a frame; does nothing after kMostFrames.
+  /// Adds a frame; does nothing after kMaxFrames.
   /// \param grey the region as it was located \param located by the run, in px of the whole picture
   void add(std::int64_t number, const cv::Mat& grey, const imaging::Located& located);
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/counted.hpp"
 #include "core/error.hpp"
+#include "core/plural.hpp"
 #include "imaging/disc/position_error.hpp"
 
 namespace twincell::cli {
@@ -107,7 +107,7 @@ std::string LocatedFrames::lines() const {
   std::string text;
   for (std::size_t k = 0; k < records_.size(); ++k) {
     const Record& r = records_[k];
-    text += fmt::format("frame {}: {}, edge blur {:.2f} px", r.frame, counted(r.beads, "bead"), r.blur_px);
+    text += fmt::format("frame {}: {}, edge blur {:.2f} px", r.frame, plural(r.beads, "bead"), r.blur_px);
     if (motion_.claimed(k))
       text += fmt::format(", moved by {:.2f} px during the exposure",
                           std::hypot(motion_.path(k)[0], motion_.path(k)[1]));
@@ -127,7 +127,7 @@ std::string LocatedFrames::unproven_motion() const {
   return fmt::format(
       "in {} the edges are blurred more along one direction than across it, though {}: no motion is "
       "concluded from it\n",
-      counted(unproven, "frame"),
+      plural(unproven, "frame"),
       frames() == 1 ? "one frame does not show how beads move"
                     : "the beads do not move that far from frame to frame");
 }
@@ -137,7 +137,7 @@ std::string LocatedFrames::overlaps() const {
   return fmt::format(
       "discs overlap in projection, as in two layers: {} of {} do so and are marked, and those that others "
       "hide are missing (--refine overlapping)\n",
-      overlapping_, counted(beads_, "bead"));
+      overlapping_, plural(beads_, "bead"));
 }
 
 std::string LocatedFrames::doubts() const {

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/advice.hpp"
-#include "cli/numbers.hpp"
+#include "cli/error_hints.hpp"
+#include "cli/number_checks.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
 #include "cli/version.hpp"
@@ -190,7 +190,7 @@ const CLI::App& selected(const CLI::App& program) {
 
 /// The complaint with the next step that the command line suggests.
 std::string with_advice(const std::string& complaint, int argc, char** argv) {
-  const std::string advice = advice_on_file({argv + 1, argv + argc}, complaint);
+  const std::string advice = file_hint({argv + 1, argv + argc}, complaint);
   if (advice.empty()) return complaint;
   return complaint.substr(0, complaint.find_last_not_of('.') + 1) + "; " + advice +
          (advice.ends_with('?') ? "" : ".");
@@ -208,7 +208,7 @@ std::string with_dashes(const CLI::App& program, const std::string& complaint, i
   return is_option ? "--" + complaint : complaint;
 }
 
-/// Writes out what is still buffered. A reader that went away is no error.
+/// Writes out what is still buffered. A reader that went away is not an error.
 int finish_output() {
   std::cout.flush();
   const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout;
@@ -256,7 +256,7 @@ int run(int argc, char** argv) {
     // An option that is misspelled is the cause, also where CLI11 misses the right one first.
     if (const std::string complaint = unknown_option(program, argc, argv); !complaint.empty())
       return complain(complaint, ExitCode::usage);
-    return complain(advised(selected(program), e.what()), ExitCode::usage);
+    return complain(with_hint(selected(program), e.what()), ExitCode::usage);
   }
 }
 

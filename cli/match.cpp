@@ -14,12 +14,11 @@
 #include "cli/phase_options.hpp"
 #include "cli/plan_text.hpp"
 #include "cli/verb.hpp"
-#include "core/counted.hpp"
 #include "core/output_rules.hpp"
-#include "imaging/cell/implausible.hpp"
+#include "core/plural.hpp"
 #include "imaging/stack/different_stacks.hpp"
 #include "imaging/stack/open_frames.hpp"
-#include "imaging/track/track_request.hpp"
+#include "trajectory/unit_checks.hpp"
 #include "twin/cell_names.hpp"
 #include "twin/twin.hpp"
 
@@ -27,22 +26,19 @@ namespace twincell::cli {
 namespace {
 
 struct MatchOptions {
-  twin::TwinOptions twin;
+  twin::TwinOptions twin;  ///< without the stack and its cell, which each twin has for itself
   std::vector<std::filesystem::path> stacks_and_cells;
-  imaging::PhaseRequest phase;
-  imaging::LocatingRequest locating;
   std::string output;
   ComparingFlags flags;
 };
 
-twin::TwinProvenance provenance_of(const Common& common, const twin::TwinOptions& options,
-                                   const imaging::LocatingRequest& locating) {
+twin::TwinProvenance provenance_of(const Common& common, const twin::TwinOptions& options) {
   return {.of_experiment =
-              [&common, &options, &locating](const imaging::CellDescription& cell) {
+              [&common, &options](const imaging::CellDescription& cell) {
                 Provenance p = common.provenance();
                 p.config = cell.text;
-                p.inputs = {imaging::file_of_stack(options.stack), options.cell_file};
-                for (const std::string& file : {locating.mask, locating.background})
+                p.inputs = {imaging::file_of_stack(options.stack), options.cell_file()};
+                for (const std::string& file : {options.film.locating.mask, options.film.locating.background})
                   if (!file.empty()) p.inputs.emplace_back(file);
                 return p.to_json();
               },
@@ -52,17 +48,24 @@ twin::TwinProvenance provenance_of(const Common& common, const twin::TwinOptions
               }};
 }
 
-/// Notes the values of the cell that replace measured ones.
-void note_overridden(const Common& common, const std::filesystem::path& cell_file) {
+/// Notes the values of the cell that replace measured ones, and those whose units are doubtful.
+void note_cell(const Common& common, const std::filesystem::path& cell_file) {
   const imaging::CellDescription cell = imaging::read_cell(cell_file);
-  if (cell.included.overridden.empty()) return;
-  note(common, fmt::format("values in {} take precedence over those measured in {}: {}", cell_file.string(),
-                           cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
+  if (!cell.included.overridden.empty())
+    note(common, fmt::format("values in {} take precedence over those measured in {}: {}", cell_file.string(),
+                             cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
+  for (const std::string& doubt : implausible_numbers(cell.shaken_cell())) note(common, doubt);
 }
 
-twin::ComparingOptions configuration(const MatchOptions& o, const Common& common) {
+/// The options of the comparison of the twins with their experiments.
+twin::ComparingOptions comparing(const MatchOptions& o, const Common& common,
+                                 const std::vector<twin::Twin>& twins) {
   twin::ComparingOptions options = comparing_options(o.flags, common);
   options.scratch = o.output;
+  for (const twin::Twin& twin : twins) {
+    options.experiments.push_back(twin.experiment);
+    options.simulations.insert(options.simulations.end(), twin.simulations.begin(), twin.simulations.end());
+  }
   return options;
 }
 
@@ -85,52 +88,39 @@ nlohmann::json as_json(const twin::Twin& twin) {
 std::string as_text(const twin::Twin& twin) {
   return (twin.drive.empty() ? "" : "drive " + twin.drive + "\n") + phases_in_words(twin.phases) +
          fmt::format("{} in the first packing, {:.4g} px per bead, located to {:.2g} sigma; {} over {}; {}\n",
-                     counted(twin.beads, "bead"), twin.pixels_per_sigma, twin.position_error,
-                     counted(twin.simulations.size(), "twin"), counted(twin.cycles, "cycle"),
+                     plural(twin.beads, "bead"), twin.pixels_per_sigma, twin.position_error,
+                     plural(twin.simulations.size(), "twin"), plural(twin.cycles, "cycle"),
                      twin.scene.string());
 }
 
-/// The options of a twin with what the command line and the cell say about beads and phases.
-twin::TwinOptions configure_twin(const MatchOptions& o, twin::TwinOptions options, const Common& common) {
-  imaging::CellDescription cell = imaging::read_cell(options.cell_file);
-  for (const std::string& doubt : imaging::implausible_numbers(imaging::shaken_cell(cell)))
-    note(common, doubt);
-  options.phases = imaging::phase_source(o.phase, cell, options.cell_file.string());
-  options.frames = imaging::frames_of(o.locating);
-  options.phase_lock = imaging::lock_of_chosen(cell.phase_lock, options.frames);
-  options.locator = imaging::locator_of(o.locating, cell.pixels_per_sigma, cell.bright, cell.refine);
-  options.region = imaging::region_of(o.locating);
-  options.open_stack = [&o, &common, stack = options.stack.string(), locator = options.locator] {
-    return open_for_locating(stack, o.locating, locator, common);
+/// The options of the twin of one stack.
+twin::TwinOptions options_of(const MatchOptions& o, const Common& common, const std::filesystem::path& stack,
+                             const std::filesystem::path& cell) {
+  twin::TwinOptions options = o.twin;
+  options.stack = stack;
+  options.film.request.cell_file = cell.string();
+  options.film.threads = common.n_threads();
+  options.discard = o.flags.discard_cycles;
+  options.open = [&o, &common, name = stack.string()](const imaging::LocatorOptions& locator) {
+    return open_for_locating(name, o.twin.film.locating, locator, common);
   };
   return options;
 }
 
-/// Makes the twin of one stack in `folder` and adds its trajectories to the comparison.
-twin::Twin add_twin(const Common& common, const MatchOptions& o, const twin::TwinOptions& of_stack,
-                    const std::filesystem::path& folder, twin::ComparingOptions& comparing) {
-  note_overridden(common, of_stack.cell_file);
-  const twin::TwinOptions options = configure_twin(o, of_stack, common);
-  twin::Twin twin =
-      twin::make_twin(options, folder, provenance_of(common, options, o.locating), progress_bars(common));
-  if (!twin.phases.warning.empty()) note(common, twin.phases.warning + ".");
-  if (!twin.missing_beads.empty())
-    note(common, fmt::format("{}: {} ({} are in its first packing).", of_stack.stack.string(),
-                             twin.missing_beads, twin.beads));
-  for (const std::string& doubt : twin.cell_doubts)
-    note(common, fmt::format("{}: {}", of_stack.stack.string(), doubt));
-  for (const std::string& doubt :
-       {twin.paler_doubt, twin.surplus_tracks, twin.scale_doubt, twin.aspect_doubt, twin.still_discs})
-    if (!doubt.empty()) note(common, fmt::format("{}: {}.", of_stack.stack.string(), doubt));
+/// Makes the twin of one stack in `folder`, and notes what is doubtful about it.
+twin::Twin make_noted_twin(const Common& common, const twin::TwinOptions& options,
+                           const std::filesystem::path& folder) {
+  note_cell(common, options.cell_file());
+  twin::Twin twin = twin::make_twin(options, folder, provenance_of(common, options), progress_bars(common));
+  for (const std::string& doubt : twin.doubts)
+    note(common, fmt::format("{}: {}", options.stack.string(), doubt));
   if (twin.records_transient())
     note(common,
          fmt::format(
              "{} begins in mid-motion: the beads of its first packing lie {:.2g} sigma above where they "
              "settle, on average. The twin starts at rest, so its first cycles differ; --set "
              "time.discard=8 leaves out eight of them.",
-             of_stack.stack.string(), twin.fall));
-  comparing.experiments.push_back(twin.experiment);
-  comparing.simulations.insert(comparing.simulations.end(), twin.simulations.begin(), twin.simulations.end());
+             options.stack.string(), twin.fall));
   return twin;
 }
 
@@ -165,23 +155,19 @@ void require_layout(const std::filesystem::path& folder, bool several) {
 
 /// Makes the twins of all stacks, each in a folder of its own if there are several.
 std::vector<twin::Twin> make_twins(const Common& common, const MatchOptions& o,
-                                   const twin::StacksAndCells& pairs, twin::ComparingOptions& comparing) {
+                                   const twin::StacksAndCells& pairs) {
   const std::filesystem::path folder = o.output;
   const std::vector<std::string> names = twin::names_of_stacks(pairs.stacks);
   const bool several = pairs.stacks.size() > 1;
   require_layout(folder, several);
   if (several) claim_shared_folder(folder, twin::twin_folder());
-  twin::TwinOptions options = o.twin;
-  options.threads = common.n_threads();
-  options.discard = comparing.analysis.discard_cycles;
   std::vector<twin::Twin> twins;
   for (std::size_t i = 0; i < pairs.stacks.size(); ++i) {
-    options.stack = pairs.stacks[i];
-    options.cell_file = pairs.cells[i];
     const auto add = [&] {
-      twins.push_back(add_twin(common, o, options, several ? folder / names[i] : folder, comparing));
+      const twin::TwinOptions options = options_of(o, common, pairs.stacks[i], pairs.cells[i]);
+      twins.push_back(make_noted_twin(common, options, several ? folder / names[i] : folder));
     };
-    several ? naming(options.stack, add) : add();
+    several ? naming(pairs.stacks[i], add) : add();
   }
   return twins;
 }
@@ -194,15 +180,16 @@ nlohmann::json as_json(const std::vector<twin::Twin>& twins) {
 }
 
 void run(const Common& common, const MatchOptions& o) {
-  twin::ComparingOptions options = configuration(o, common);
+  (void)comparing(o, common, {});  // refuse wrong options before the first hour
   const twin::StacksAndCells pairs = twin::pair_stacks(o.stacks_and_cells);
   // A mistake in the last cell or stack must not appear after the first hour.
   for (const auto& cell : pairs.cells) (void)imaging::read_cell(cell);
   imaging::require_different_stacks(pairs.stacks);
-  const std::vector<twin::Twin> twins = make_twins(common, o, pairs, options);
+  const std::vector<twin::Twin> twins = make_twins(common, o, pairs);
   std::string text;
   for (const twin::Twin& twin : twins) text += as_text(twin);
-  const NotedComparison compared = compare_sides(common, options);
+  const twin::ComparingOptions options = comparing(o, common, twins);
+  const twin::NotedComparison compared = compare_sides(common, options);
   report_comparison(common, options, compared, std::filesystem::path(o.output) / "report", as_json(twins),
                     text);
 }
@@ -245,17 +232,17 @@ void add_match(CLI::App& program, Common& common) {
                   "the uncertainty of its position")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  add_locating_options(verb, o->locating);
+  add_locating_options(verb, o->twin.film.locating);
   verb.add_flag(
-      "--trust-stated-drive", o->twin.trust_stated_drive,
+      "--trust-stated-drive", o->twin.film.trust_stated_drive,
       "Use the drive and the frames per cycle that the cell states, even if the plate or the bed in the film "
       "moves differently");
-  verb.add_option("--range", o->twin.link.range_diameters,
+  verb.add_option("--range", o->twin.film.link.range_diameters,
                   "Largest distance of a bead from its predicted position, bead diameters, above 0, at most "
                   "10; default: 2");
-  verb.add_option("--memory", o->twin.link.memory,
+  verb.add_option("--memory", o->twin.film.link.memory,
                   "Number of frames for which a bead may be missing, 0 to 1000; default: 3");
-  add_phase_options(verb, o->phase);
+  add_phase_options(verb, o->twin.film.request.phase);
   add_comparing_flags(verb, o->flags);
   verb.callback([&common, o] { run(common, *o); });
 }

@@ -14,8 +14,8 @@
 #include "cli/plan_text.hpp"
 #include "cli/results_summary.hpp"
 #include "cli/verb.hpp"
-#include "core/counted.hpp"
 #include "core/json_text.hpp"
+#include "core/plural.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/scene/read_scene.hpp"
 
@@ -77,7 +77,7 @@ Run run_once(const MeasureOptions& options, const std::vector<std::string>& assi
 std::string as_text(const Run& run, bool verbose, bool requested) {
   const json& about = run.about;
   std::string s = fmt::format("start: {}; {} after {} discarded\n", about["start"].get<std::string>(),
-                              counted(about["cycles"].get<long>(), "cycle"), about["discarded"].get<long>());
+                              plural(about["cycles"].get<long>(), "cycle"), about["discarded"].get<long>());
   if (about.contains("w")) s += fmt::format("W = {:.6g}\n", about["w"].get<double>());
   if (about.contains("until")) s += about["until"]["text"].get<std::string>() + "\n";
   if (about.contains("rest_height"))

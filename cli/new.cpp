@@ -12,7 +12,7 @@
 #include <set>
 
 #include "cli/comparing_options.hpp"
-#include "cli/numbers.hpp"
+#include "cli/number_checks.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
@@ -204,7 +204,8 @@ void run(const Common& common, NewOptions& o) {
     cells.push_back(write_one(common, o, o.stacks[i], cell, i == 0, said));
     open += cells.back()["open"].size();
   }
-  // A period that is no whole number of frames has phases of its own in every stack, which the plate shows.
+  // A period that is not a whole number of frames has phases of its own in every stack, which the plate
+  // shows.
   const bool whole_periods = std::none_of(cells.begin(), cells.end(), [](const nlohmann::json& cell) {
     return std::any_of(cell["not_measured"].begin(), cell["not_measured"].end(),
                        [](const nlohmann::json& m) { return m["what"] == twin::kFramesPerCycle; });

@@ -296,4 +296,10 @@ void watch_signals() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
+ProgressOf progress_bars(const Common& common) {
+  return [&common](const std::string& stage) -> std::unique_ptr<Progress> {
+    return std::make_unique<ProgressBar>(common, stage);
+  };
+}
+
 }  // namespace twincell::cli

@@ -93,7 +93,7 @@ CLI::Option* writes(Common& common, CLI::App& verb, CLI::Option* option, Product
 
 /// Prints the result of a verb: `document` as JSON with --json, otherwise `text`, in lines of at most
 /// kColumns columns on a terminal, or nothing with --quiet. The result goes to stderr if an output of the
-/// verb is standard output. A reader that has stopped reading, such as head, is no error.
+/// verb is standard output. A reader that has stopped reading, such as head, is not an error.
 void print_result(const Common& common, const nlohmann::json& document, const std::string& text);
 /// Registers the files that an input names, such as the start of a scene, as inputs too, and refuses an
 /// output of the verb that is one of them. Call it before the work. Empty paths are ignored. \throws
@@ -137,6 +137,9 @@ class ProgressBar : public Progress {
   std::int64_t start_ns_;
   EveryMinute due_;
 };
+
+/// Makes a progress bar for each stage of a function of the library.
+ProgressOf progress_bars(const Common& common);
 
 /// Installs the signal handlers. ProgressBar and throw_if_cancelled (cancellation.hpp) react to the signals.
 /// A program that has not stopped 0.7 s after a signal is terminated and its unfinished outputs are removed,

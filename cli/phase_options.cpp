@@ -7,10 +7,10 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
-#include "cli/numbers.hpp"
+#include "cli/number_checks.hpp"
 #include "cli/output.hpp"
 #include "core/choice.hpp"
-#include "core/counted.hpp"
+#include "core/plural.hpp"
 
 namespace twincell::cli {
 
@@ -52,15 +52,15 @@ std::string phases_in_words(const imaging::PhaseTable& p) {
       text += fmt::format(", jitter {}{:.3f} frames",
                           p.method == imaging::PhaseMethod::found ? "at most " : "", *p.jitter);
     if (!p.frames.empty())
-      text += fmt::format(", {} dropped, {} taken twice", counted(p.dropped, "frame"), p.doubled);
-    if (p.between > 0) text += fmt::format(", {} between two phases", counted(p.between, "frame"));
+      text += fmt::format(", {} dropped, {} taken twice", plural(p.dropped, "frame"), p.doubled);
+    if (p.between > 0) text += fmt::format(", {} between two phases", plural(p.between, "frame"));
     if (!p.out_of_lock.empty())
-      text += fmt::format(", {} out of lock", counted(frames_in(p.out_of_lock), "frame"));
+      text += fmt::format(", {} out of lock", plural(frames_in(p.out_of_lock), "frame"));
     // No triggered camera is known to miss so many frames. A camera that runs free of the drive slips
     // continually; one whose frames are only repeated, with clear phases between them, does not.
-    constexpr double kMostSlips = 0.1, kClear = 0.15;
+    constexpr double kMaxSlips = 0.1, kClear = 0.15;
     if (p.method == imaging::PhaseMethod::found &&
-        static_cast<double>(p.dropped + p.doubled) > kMostSlips * static_cast<double>(p.frames.size()))
+        static_cast<double>(p.dropped + p.doubled) > kMaxSlips * static_cast<double>(p.frames.size()))
       text +=
           p.dropped == 0 && p.jitter.value_or(0) < kClear
               ? " (so many repeated frames come from a conversion of the frame rate, or from a bed at rest; "

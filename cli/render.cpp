@@ -8,8 +8,8 @@
 
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
+#include "core/plural.hpp"
 #include "imaging/camera/synthetic_camera.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
@@ -61,7 +61,7 @@ void run(RenderOptions& o, const Common& common) {
   }
   nlohmann::json document = {
       {"frames", done.frames}, {"dropped", done.dropped}, {"doubled", done.doubled}, {"seed", camera.seed}};
-  std::string text = counted(done.frames, "frame");
+  std::string text = plural(done.frames, "frame");
   if (!o.job.folder.empty()) {
     document["output"] = o.job.folder.string();
     text += fmt::format(", truth.csv, frames.csv, CELL.toml and CAMERA.toml in {}", o.job.folder.string());

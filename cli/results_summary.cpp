@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "core/counted.hpp"
+#include "core/plural.hpp"
 
 namespace twincell::cli {
 
@@ -53,7 +53,7 @@ std::string results_summary(const std::vector<analysis::Result>& results, bool r
         fmt::format("{:<25} {:<13} {:<26} {:<15} from\n", "result", "value", "95 % interval", "unit") + rows;
   if (numbers + lists + absent > 0)
     text += fmt::format("not printed: {}, {}, {} absent; -v prints them, and how each is computed\n",
-                        counted(numbers, "number"), counted(lists, "list"), absent);
+                        plural(numbers, "number"), plural(lists, "list"), absent);
   return text;
 }
 

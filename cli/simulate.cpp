@@ -10,15 +10,14 @@
 #include <memory>
 #include <optional>
 
-#include "cli/numbers.hpp"
+#include "cli/number_checks.hpp"
 #include "cli/output.hpp"
 #include "cli/plan_text.hpp"
 #include "cli/profile.hpp"
 #include "cli/verb.hpp"
 #include "core/cancellation.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
-#include "imaging/cell/implausible.hpp"
+#include "core/plural.hpp"
 #include "sim/accuracy/step_error.hpp"
 #include "sim/run/checkpoint_folder.hpp"
 #include "sim/run/make_solver.hpp"
@@ -26,6 +25,7 @@
 #include "sim/scene/read_scene.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "trajectory/formats/h5md_file.hpp"
+#include "trajectory/unit_checks.hpp"
 
 namespace twincell::cli {
 
@@ -141,7 +141,7 @@ nlohmann::json describe(const sim::Simulation& run, const std::string& output, s
 
 std::string as_text(const nlohmann::json& d, bool verbose) {
   std::string s =
-      fmt::format("{}, {}\n", counted(d["beads"].get<long>(), "bead"), d["kernel"].get<std::string>());
+      fmt::format("{}, {}\n", plural(d["beads"].get<long>(), "bead"), d["kernel"].get<std::string>());
   if (d["gamma"].is_number())
     s += fmt::format("Gamma = {:.6g}, K_m = {:.6g}{}, displacement {}\n", d["gamma"].get<double>(),
                      d["k_m"].get<double>(), d["ramp"].is_object() ? " before the ramp" : "",
@@ -173,9 +173,9 @@ std::string as_text(const nlohmann::json& d, bool verbose) {
             ? "; theories of hard beads, which assume instantaneous collisions, are not valid above 0.1"
             : "");
   s += fmt::format("{} after {} discarded, {:.3g} s, {:.3g} million particle-steps/s, {} built\n",
-                   counted(d["cycles"].get<long>(), "cycle"), d["discarded"].get<long>(),
+                   plural(d["cycles"].get<long>(), "cycle"), d["discarded"].get<long>(),
                    d["seconds"].get<double>(), 1e-6 * d["particle_steps_per_second"].get<double>(),
-                   counted(d["list_builds"].get<long>(), "neighbour list"));
+                   plural(d["list_builds"].get<long>(), "neighbour list"));
   if (d["continued_from_step"].is_number())
     s += fmt::format("continued from step {} of a checkpoint\n", d["continued_from_step"].get<long>());
   return s + d["output"].get<std::string>() + "\n";
@@ -211,20 +211,20 @@ bool is_finished(const sim::Scene& scene, const SimulateOptions& options) {
   return true;
 }
 
-/// The folder of checkpoints, if the command line requests one. \throws ConfigError if the folder contains an
-/// unfinished run and --resume is not given
-std::optional<sim::CheckpointFolder> folder_for(const sim::Scene& scene, const SimulateOptions& options,
-                                                const std::function<std::string()>& provenance,
-                                                const Common& common) {
+/// The folder of checkpoints; null if the command line requests none. \throws ConfigError if the folder
+/// contains an unfinished run and --resume is not given
+std::unique_ptr<sim::CheckpointFolder> folder_for(const sim::Scene& scene, const SimulateOptions& options,
+                                                  const std::function<std::string()>& provenance,
+                                                  const Common& common) {
   const auto place = sim::CheckpointFolder::of(options.output);
   if (!options.resume && sim::CheckpointFolder::holds_a_run(place))
     throw ConfigError(
         {place.string(), 0, 0, ""},
         "contains an unfinished run; continue it with --resume, or remove the folder to start again.");
-  if (!options.resume && !options.checkpoint_every) return std::nullopt;
+  if (!options.resume && !options.checkpoint_every) return nullptr;
   if (options.resume && !sim::CheckpointFolder::holds_a_run(place))
     note(common, "there is no checkpoint in " + place.string() + "; the run starts from the beginning.");
-  return std::optional<sim::CheckpointFolder>(std::in_place, place, scene, provenance);
+  return std::make_unique<sim::CheckpointFolder>(place, scene, provenance);
 }
 
 /// Runs the simulation. Its frames go directly to the file, or through a folder of checkpoints. If the run
@@ -255,13 +255,11 @@ void note_doubts(const sim::Scene& scene, const Common& common) {
     note(common,
          fmt::format("cell.gravity = {:g} is in units of scale.gravity_m_s2: gravity is {:.4g} m/s^2.",
                      scene.g(), scene.g() * *scene.scale.gravity_m_s2));
-  for (const std::string& doubt :
-       imaging::implausible_numbers(imaging::shaken_cell(scene.scale, scene.drive)))
+  for (const std::string& doubt : implausible_numbers(shaken_cell(scene.scale, scene.drive)))
     note(common, doubt);
 }
 
-void run_simulate(const SimulateOptions& options, const Common& common) {
-  Profile profile(options.profile);
+sim::Scene read_scene(const SimulateOptions& options, const Common& common) {
   std::vector<std::string> assignments = with_seed(options.assignments, common);
   if (options.relax) assignments.emplace_back("start.relax=true");
   if (options.contacts) assignments.emplace_back("time.contacts=true");
@@ -271,65 +269,95 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
     note(common, fmt::format("[until] applies only to `measure` and `sweep`, which analyse during the run; "
                              "`simulate` runs all {} cycles.",
                              scene.cycles));
-
   note_doubts(scene, common);
-  if (is_finished(scene, options)) {
-    note(common, options.output + " is finished; there is nothing to resume.");
-    return;
-  }
-  // Place the beads, or load the checkpoint.
+  return scene;
+}
+
+/// Where a run begins: with the beads placed, or at a checkpoint.
+struct RunStart {
+  std::unique_ptr<sim::CheckpointFolder> checkpoints;  ///< null: none are saved
+  sim::RunState state;
+  std::string provenance;
+  std::int64_t begun_at = 0;  ///< step of the drive; 0: at its beginning
+};
+
+/// Places the beads, or loads the checkpoint. The beads are placed once, before the folder of checkpoints is
+/// created, so that an impossible start leaves no folder behind.
+RunStart place_or_resume(const sim::Scene& scene, const SimulateOptions& options, const Common& common,
+                         StageTimes* times) {
   ProgressBar placing(common, "placing beads");
   if (scene.n_beads) sim::require_disk(scene, sim::make_plan(scene), *scene.n_beads, options.output);
-  // The beads are placed once, before the folder of checkpoints is created, so that an impossible start
-  // leaves no folder behind.
   const auto place = [&] {
-    Stage stage(profile.times(), "placing", "beads");
+    Stage stage(times, "placing", "beads");
     sim::RunState placed = sim::placed(scene, placing);
     stage.count(static_cast<double>(placed.beads.size()));
     return placed;
   };
-  std::optional<sim::RunState> start;
-  if (!sim::CheckpointFolder::holds_a_run(sim::CheckpointFolder::of(options.output))) start = place();
+  std::optional<sim::RunState> placed;
+  if (!sim::CheckpointFolder::holds_a_run(sim::CheckpointFolder::of(options.output))) placed = place();
   const auto make_provenance = [&] {
-    if (!start) start = place();
-    return scene_provenance(common, scene, start->beads, {options.scene});
+    if (!placed) placed = place();
+    return scene_provenance(common, scene, placed->beads, {options.scene});
   };
-  auto checkpoints = folder_for(scene, options, make_provenance, common);
-  sim::CheckpointFolder* folder = checkpoints ? &*checkpoints : nullptr;
+  RunStart start;
+  start.checkpoints = folder_for(scene, options, make_provenance, common);
+  const sim::CheckpointFolder* folder = start.checkpoints.get();
   const bool goes_on = folder != nullptr && folder->found();
-  const std::string provenance = folder != nullptr ? folder->checkpoint().provenance : make_provenance();
-  sim::RunState state = goes_on ? folder->checkpoint().state : std::move(*start);
-  const std::vector<std::string> told =
-      sim::make_plan(scene, state.beads).warnings;  // printed now, because settling can take long
-  for (const std::string& warning : told) note(common, warning);
-  const std::int64_t begun_at = goes_on && state.driven ? state.step : 0;
-  sim::Simulation run(std::move(scene), std::move(state), sim::SolverKind::best, common.threads);
+  start.provenance = folder != nullptr ? folder->checkpoint().provenance : make_provenance();
+  start.state = goes_on ? folder->checkpoint().state : std::move(*placed);
+  start.begun_at = goes_on && start.state.driven ? start.state.step : 0;
+  return start;
+}
 
-  // Settle, with checkpoints. A run that cannot settle would fail again, so its checkpoints are removed.
-  constexpr double kTenMinutes = 600;
-  const double every = options.checkpoint_every.value_or(kTenMinutes);
-  {
-    SavingProgress settling(common, "settling", run, folder, every, profile.times());
-    try {
-      run.settle(settling, profile.times());
-    } catch (const RunError&) {
-      if (folder != nullptr) folder->remove();
-      throw;
-    }
+/// A run that cannot settle would fail again, so its checkpoints are removed.
+void settle_with_checkpoints(sim::Simulation& run, sim::CheckpointFolder* folder, double every_s,
+                             const Common& common, StageTimes* times) {
+  SavingProgress settling(common, "settling", run, folder, every_s, times);
+  try {
+    run.settle(settling, times);
+  } catch (const RunError&) {
+    if (folder != nullptr) folder->remove();
+    throw;
   }
-  const std::vector<std::string> warnings = run.warnings();
-  for (const std::string& warning : warnings)
-    if (std::find(told.begin(), told.end(), warning) == told.end()) note(common, warning);
-  // Drive the bed and write its frames.
+}
+
+/// Drives the bed and writes its frames. \returns the time that this took, s
+double run_and_write(sim::Simulation& run, const std::string& output, const std::string& provenance,
+                     sim::CheckpointFolder* folder, double every_s, const Common& common, StageTimes* times) {
   TrajectoryInfo info = run.trajectory_info();
   info.provenance_json = provenance;
   if (folder != nullptr) folder->announce(info);
-  H5mdWriter writer(options.output, std::move(info));
-  SavingProgress simulating(common, "simulating", run, folder, every, profile.times());
+  H5mdWriter writer(output, std::move(info));
+  SavingProgress simulating(common, "simulating", run, folder, every_s, times);
   const auto begin = std::chrono::steady_clock::now();
-  run_into(writer, run, simulating, folder, options.output, profile.times());
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  nlohmann::json document = describe(run, options.output, begun_at, seconds);
+  run_into(writer, run, simulating, folder, output, times);
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+void run_simulate(const SimulateOptions& options, const Common& common) {
+  Profile profile(options.profile);
+  sim::Scene scene = read_scene(options, common);
+  if (is_finished(scene, options)) {
+    note(common, options.output + " is finished; there is nothing to resume.");
+    return;
+  }
+  RunStart start = place_or_resume(scene, options, common, profile.times());
+  sim::CheckpointFolder* folder = start.checkpoints.get();
+  const std::vector<std::string> told =
+      sim::make_plan(scene, start.state.beads).warnings;  // printed now, because settling can take long
+  for (const std::string& warning : told) note(common, warning);
+  sim::Simulation run(std::move(scene), std::move(start.state), sim::SolverKind::best, common.threads);
+
+  constexpr double kTenMinutes = 600;  // s
+  const double every_s = options.checkpoint_every.value_or(kTenMinutes);
+  settle_with_checkpoints(run, folder, every_s, common, profile.times());
+  const std::vector<std::string> warnings = run.warnings();
+  for (const std::string& warning : warnings)
+    if (std::find(told.begin(), told.end(), warning) == told.end()) note(common, warning);
+
+  const double seconds =
+      run_and_write(run, options.output, start.provenance, folder, every_s, common, profile.times());
+  nlohmann::json document = describe(run, options.output, start.begun_at, seconds);
   document["warnings"] = warnings;
   std::string text = as_text(document, common.verbose);
   state_counters(run.solver(), profile);

@@ -122,12 +122,12 @@ nlohmann::json describe_stack(const std::filesystem::path& stack) {
   if (first) d["time"] = {{"origin", info.time_origin}, {"first_s", *first}};
   // Reading all frames would take minutes. The second stamp is enough to judge the stamps; frames that a
   // conversion of the frame rate repeats return every few frames.
-  constexpr std::size_t kMostRead = 100;
+  constexpr std::size_t kMaxRead = 100;
   imaging::RepeatedFrames repeated;
   repeated.add(frame);
   std::size_t read = 1;
   try {
-    for (; read < kMostRead && frames->next(frame); ++read) {
+    for (; read < kMaxRead && frames->next(frame); ++read) {
       if (first && read == 1) d["time"]["second_s"] = *frames->time_s();
       repeated.add(frame);
     }
@@ -135,7 +135,7 @@ nlohmann::json describe_stack(const std::filesystem::path& stack) {
     d["notes"].push_back(fmt::format("frame {} cannot be read: {}", read, e.what()));
   }
   if (const std::string repeats = imaging::repeats_in_words(repeated.repeats()); !repeats.empty())
-    d["notes"].push_back((read == kMostRead ? "at the beginning, " : "") + repeats + ".");
+    d["notes"].push_back((read == kMaxRead ? "at the beginning, " : "") + repeats + ".");
   return d;
 }
 

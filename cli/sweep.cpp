@@ -20,10 +20,10 @@
 #include "cli/sweep_watch.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/escape.hpp"
 #include "core/output_rules.hpp"
+#include "core/plural.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sweep/collect.hpp"
 #include "sweep/farm.hpp"
@@ -116,7 +116,7 @@ void note_foreign(const sweep::Schedule& schedule, const sweep::Store& store, co
       std::count_if(stored.begin(), stored.end(), [&](const std::string& id) { return !known.contains(id); });
   if (foreign > 0)
     note(common, fmt::format("{}: {} of another scene, seed or plan {} there and {} not used.",
-                             store.folder().string(), counted(static_cast<std::size_t>(foreign), "result"),
+                             store.folder().string(), plural(static_cast<std::size_t>(foreign), "result"),
                              foreign == 1 ? "is" : "are", foreign == 1 ? "is" : "are"));
 }
 
@@ -300,43 +300,39 @@ void run_template(const SweepOptions& options) {
         options.jobs, run);
 }
 
-}  // namespace
+using Options = std::shared_ptr<SweepOptions>;
 
-void add_sweep(CLI::App& program, Common& common) {
-  CLI::App& verb = *program.add_subcommand(
-      "sweep",
-      "Run many scenes: a grid of parameters, or a search for the value at which a verdict changes. Each "
-      "point is stored in the folder of the sweep, so a stopped sweep can be continued.");
-  verb.require_subcommand(1);
-  verb.footer(
-      "Example:\n"
-      "  twincell sweep run plan.toml && twincell sweep collect plan.toml -o results.json\n"
-      "Plans: docs/sweeps.md");
-  auto options = std::make_shared<SweepOptions>();
-  const auto add = [&](const char* name, const char* summary, const char* example) -> CLI::App& {
-    CLI::App& sub = add_verb(verb, common, name, summary, example);
-    takes_seed(sub, common);
-    sub.add_option("plan", options->plan, "Plan file (TOML, docs/sweeps.md)")->required();
-    // The folder is checked against the output rules when the sweep starts (sweep/store.cpp).
-    common.outputs.push_back(
-        {sub.add_option("--folder", options->folder, "Folder of the sweep; default: PLAN.sweep")
-             ->check([](const std::string& said) {
-               return said.empty() ? std::string("The folder of the sweep has no name.") : std::string();
-             }),
-         nullptr, Product::runs()});
-    if (std::string(name) != "collect") former_option(sub, "-o,--output", "--folder");
-    return sub;
-  };
-  CLI::App& plan = add(
-      "plan",
+/// Adds a subcommand that reads the plan and the folder of the sweep.
+CLI::App& add_stage(CLI::App& verb, Common& common, const Options& options, const char* name,
+                    const char* summary, const char* example) {
+  CLI::App& sub = add_verb(verb, common, name, summary, example);
+  takes_seed(sub, common);
+  sub.add_option("plan", options->plan, "Plan file (TOML, docs/sweeps.md)")->required();
+  // The folder is checked against the output rules when the sweep starts (sweep/store.cpp).
+  common.outputs.push_back(
+      {sub.add_option("--folder", options->folder, "Folder of the sweep; default: PLAN.sweep")
+           ->check([](const std::string& said) {
+             return said.empty() ? std::string("The folder of the sweep has no name.") : std::string();
+           }),
+       nullptr, Product::runs()});
+  if (std::string(name) != "collect") former_option(sub, "-o,--output", "--folder");
+  return sub;
+}
+
+void add_plan(CLI::App& verb, Common& common, const Options& options) {
+  CLI::App& plan = add_stage(
+      verb, common, options, "plan",
       "Write the points that the plan needs into the folder of the sweep, and print their number and cost",
       "twincell sweep plan plan.toml");
   plan.callback([options, &common] { run_plan(*options, common); });
+}
 
-  CLI::App& run = add("run",
-                      "Compute the points, one on each core, and store their results. After a stop, the same "
-                      "command continues.",
-                      "twincell sweep run plan.toml\n  mpirun -n 16 twincell sweep run plan.toml --mpi");
+void add_run(CLI::App& verb, Common& common, const Options& options) {
+  CLI::App& run =
+      add_stage(verb, common, options, "run",
+                "Compute the points, one on each core, and store their results. After a stop, "
+                "the same command continues.",
+                "twincell sweep run plan.toml\n  mpirun -n 16 twincell sweep run plan.toml --mpi");
   run.add_option("--shard", options->shard,
                  "Compute only shard i of n, as i/n: every n-th point of a grid, or every n-th search; "
                  "default: 1/1, all");
@@ -347,14 +343,20 @@ void add_sweep(CLI::App& program, Common& common) {
   add_profile_option(run, options->profile);
   run.get_option("--profile")->excludes("--mpi");
   run.callback([options, &common] { run_run(*options, common); });
+}
 
-  CLI::App& status = add(
-      "status", "Print how many points are done, running and failed, the onsets so far, and the time left",
-      "twincell sweep status plan.toml");
+void add_status(CLI::App& verb, Common& common, const Options& options) {
+  CLI::App& status =
+      add_stage(verb, common, options, "status",
+                "Print how many points are done, running and failed, the onsets so far, and the time left",
+                "twincell sweep status plan.toml");
   status.callback([options, &common] { run_status(*options, common); });
+}
 
-  CLI::App& collect = add("collect", "Write all results to one file, as JSON and as CSV tables",
-                          "twincell sweep collect plan.toml -o results.json");
+void add_collect(CLI::App& verb, Common& common, const Options& options) {
+  CLI::App& collect =
+      add_stage(verb, common, options, "collect", "Write all results to one file, as JSON and as CSV tables",
+                "twincell sweep collect plan.toml -o results.json");
   writes(common, collect,
          collect
              .add_option("-o,--output", options->output,
@@ -367,10 +369,12 @@ void add_sweep(CLI::App& program, Common& common) {
              }),
          collected_product());
   collect.callback([options, &common] { run_collect(*options, common); });
+}
 
-  CLI::App& plot =
-      add("plot", "Draw a result, or the onsets of a search, over one or two axes, with intervals",
-          "twincell sweep plot plan.toml --result s_b --over drive.gamma beads.layers");
+void add_plot(CLI::App& verb, Common& common, const Options& options) {
+  CLI::App& plot = add_stage(verb, common, options, "plot",
+                             "Draw a result, or the onsets of a search, over one or two axes, with intervals",
+                             "twincell sweep plot plan.toml --result s_b --over drive.gamma beads.layers");
   plot.add_option("--result", options->figure.result,
                   "Name of a scalar result; default: the onsets of a search, otherwise s_c")
       ->type_name(kWord);
@@ -385,7 +389,9 @@ void add_sweep(CLI::App& program, Common& common) {
                          "Folder for the figure and its data; default: figures in the folder of the sweep"),
          figures_folder());
   plot.callback([options, &common] { run_plot(*options, common); });
+}
 
+void add_template(CLI::App& verb, const Options& options) {
   CLI::App& script =
       *verb.add_subcommand("template", "Print a script that runs the sweep with Slurm or GNU parallel");
   script.footer("Example:\n  twincell sweep template slurm plan.toml --jobs 32 > sweep.sbatch");
@@ -399,6 +405,27 @@ void add_sweep(CLI::App& program, Common& common) {
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   script.callback([options] { run_template(*options); });
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& program, Common& common) {
+  CLI::App& verb = *program.add_subcommand(
+      "sweep",
+      "Run many scenes: a grid of parameters, or a search for the value at which a verdict changes. Each "
+      "point is stored in the folder of the sweep, so a stopped sweep can be continued.");
+  verb.require_subcommand(1);
+  verb.footer(
+      "Example:\n"
+      "  twincell sweep run plan.toml && twincell sweep collect plan.toml -o results.json\n"
+      "Plans: docs/sweeps.md");
+  const auto options = std::make_shared<SweepOptions>();
+  add_plan(verb, common, options);
+  add_run(verb, common, options);
+  add_status(verb, common, options);
+  add_collect(verb, common, options);
+  add_plot(verb, common, options);
+  add_template(verb, options);
 }
 
 }  // namespace twincell::cli

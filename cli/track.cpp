@@ -10,10 +10,10 @@
 #include <optional>
 #include <utility>
 
-#include "calibration/drive/track_film.hpp"
+#include "calibration/film/track_film.hpp"
 #include "cli/locating_options.hpp"
 #include "cli/named_columns.hpp"
-#include "cli/numbers.hpp"
+#include "cli/number_checks.hpp"
 #include "cli/output.hpp"
 #include "cli/phase_options.hpp"
 #include "cli/profile.hpp"
@@ -21,15 +21,15 @@
 #include "cli/truth_options.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
+#include "core/plural.hpp"
 #include "core/table.hpp"
 #include "imaging/benchmark/score.hpp"
-#include "imaging/cell/implausible.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/track/bed_in_cell.hpp"
 #include "imaging/track/write_trajectory.hpp"
 #include "trajectory/formats/h5md_file.hpp"
+#include "trajectory/unit_checks.hpp"
 
 namespace twincell::cli {
 
@@ -117,30 +117,27 @@ std::string unknown_in_words(const imaging::PhaseTable& phases, const imaging::P
   if (request.phase_lock == "none") return "--phase-lock none leaves out the phases";
   return "the frames per cycle are not stated, so that no frame has a phase; give them (--phase-lock N, or "
          "camera.frames_per_cycle), or let the plate or the bed show them (--phase-lock found), or, if the "
-         "period is no whole number of frames, list them (twincell calibrate plate --phases LIST.csv, then "
+         "period is not a whole number of frames, list them (twincell calibrate plate --phases LIST.csv, "
+         "then "
          "--phase-lock LIST.csv)";
 }
 
-/// Links the beads of a table.
-calibration::TrackedFilm track_beads_of_table(const TrackOptions& o, const Common& common,
-                                              StageTimes* times) {
-  imaging::LocatedTableOptions options{.columns = named_columns(o.columns)};
-  if (!o.picture.empty()) options.picture = {o.picture[0], o.picture[1]};
-  const auto progress = [&](const std::string& stage) -> std::unique_ptr<Progress> {
-    return std::make_unique<ProgressBar>(common, stage);
-  };
-  return calibration::track_table(read_table(o.stack), std::move(options), o.film, progress, times);
-}
-
-/// Locates the beads of the frames, or reads them from a table, and links them.
-calibration::TrackedFilm track_stack(const TrackOptions& o, const Common& common, StageTimes* times) {
+/// Links the beads of a table, or locates the beads of the frames and links them.
+calibration::TrackedFilm track(const TrackOptions& o, const Common& common, StageTimes* times) {
+  calibration::FilmOptions film = o.film;
+  const std::filesystem::path parent = std::filesystem::path(o.output).parent_path();
+  film.folder = parent.empty() ? "." : parent;
+  film.threads = common.n_threads();
+  if (imaging::is_located_table(o.stack)) {
+    imaging::LocatedTableOptions table{.columns = named_columns(o.columns)};
+    if (!o.picture.empty()) table.picture = {o.picture[0], o.picture[1]};
+    return calibration::track_table(read_table(o.stack), std::move(table), film, progress_bars(common),
+                                    times);
+  }
   const auto open = [&](const imaging::LocatorOptions& locator) {
-    return open_for_locating(o.stack, o.film.locating, locator, common);
+    return open_for_locating(o.stack, film.locating, locator, common);
   };
-  const auto progress = [&](const std::string& stage) -> std::unique_ptr<Progress> {
-    return std::make_unique<ProgressBar>(common, stage);
-  };
-  return calibration::track_film(open, o.stack, o.film, progress, times);
+  return calibration::track_film(open, o.stack, film, progress_bars(common), times);
 }
 
 /// Prints what the film contradicts or leaves open.
@@ -152,8 +149,7 @@ void print_doubts(const TrackOptions& o, const calibration::TrackedFilm& film,
     note(common,
          fmt::format("values in {} take precedence over those measured in {}: {}", o.film.request.cell_file,
                      cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
-  for (const std::string& doubt : imaging::implausible_numbers(imaging::shaken_cell(cell)))
-    note(common, doubt);
+  for (const std::string& doubt : implausible_numbers(cell.shaken_cell())) note(common, doubt);
   if (!stack.spacing_doubt.empty()) note(common, stack.spacing_doubt);
   if (imaging::is_located_table(o.stack) && range.first > 0 && stack.phases.locked())
     note(common,
@@ -163,10 +159,7 @@ void print_doubts(const TrackOptions& o, const calibration::TrackedFilm& film,
   if (!film.check.disagreement.empty())
     note(common,
          "the stated drive does not fit the film: " + film.check.disagreement + " (--trust-stated-drive).");
-  for (const std::string& doubt :
-       {stack.phases.warning, stack.missing_beads(), stack.paler_doubt(), stack.surplus_tracks(),
-        stack.scale_doubt(cell), stack.aspect_doubt(), stack.still_discs()})
-    if (!doubt.empty()) note(common, doubt + ".");
+  for (const std::string& doubt : stack.doubts(cell)) note(common, doubt);
 }
 
 /// Writes the trajectory, then the table.
@@ -211,8 +204,8 @@ std::pair<nlohmann::json, std::string> summary(const TrackOptions& o, const cali
     document["restrictions"] = said;
   std::string text =
       fmt::format("{}, {} located, {} ({} written), {} outside the cell left out\n",
-                  counted(stack.frames.size(), "frame"), counted(beads, "bead"),
-                  counted(stack.n_tracks, "track"), info.n_beads, counted(stack.outside_cell, "detection"));
+                  plural(stack.frames.size(), "frame"), plural(beads, "bead"),
+                  plural(stack.n_tracks, "track"), info.n_beads, plural(stack.outside_cell, "detection"));
   if (constexpr double kMany = 0.02;
       static_cast<double>(stack.wrong_radius) > kMany * static_cast<double>(beads))
     text += fmt::format(
@@ -222,20 +215,16 @@ std::pair<nlohmann::json, std::string> summary(const TrackOptions& o, const cali
   return {std::move(document), text + describe(stack)};
 }
 
-void run(TrackOptions& o, const Common& common) {
+void run(const TrackOptions& o, const Common& common) {
   Profile profile(o.profile);
   (void)imaging::Scorer(o.truth.rows());  // refuse rows in the wrong order before the work
-  const std::filesystem::path parent = std::filesystem::path(o.output).parent_path();
-  o.film.folder = parent.empty() ? "." : parent;
-  o.film.threads = common.n_threads();
   const bool of_table = imaging::is_located_table(o.stack);
   for (const auto& [given, option] :
        {std::pair(!o.columns.empty(), "--columns"), {!o.picture.empty(), "--picture-size"}})
     if (given && !of_table)
       throw ConfigError({.file = {}, .key = option}, "applies to a table of located beads (.csv).");
 
-  calibration::TrackedFilm film =
-      of_table ? track_beads_of_table(o, common, profile.times()) : track_stack(o, common, profile.times());
+  calibration::TrackedFilm film = track(o, common, profile.times());
   const imaging::FrameRange range = of_table ? film.stack.range : imaging::frames_of(o.film.locating);
   print_doubts(o, film, range, common);
   write_tracks(o, film, range, common, profile.times());
@@ -332,7 +321,7 @@ void add_track(CLI::App& program, Common& common) {
   heading = std::make_unique<OptionHeading>(verb, "A table of located beads in place of frames");
   verb.add_option(
           "--columns", o->columns,
-          "Of a table: names of columns that are called otherwise, as QUANTITY=NAME: frame, x, y, radius, "
+          "Of a table: column names that differ from the defaults, as QUANTITY=NAME: frame, x, y, radius, "
           "diameter, sigma_x, sigma_y, tracer")
       ->option_text("QUANTITY=NAME ...");
   verb.add_option(

@@ -5,8 +5,8 @@
 
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
+#include "core/plural.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
 namespace twincell::cli {
@@ -31,7 +31,7 @@ void add_validate(CLI::App& program, Common& common) {
     for (const auto& fault : faults) text += options->file + ": " + fault + "\n";
     print_result(common, {{"file", options->file}, {"conforms", faults.empty()}, {"faults", faults}}, text);
     if (!faults.empty())
-      throw InputError({options->file, 0, 0, ""}, counted(faults.size(), "fault") + " found.");
+      throw InputError({options->file, 0, 0, ""}, plural(faults.size(), "fault") + " found.");
   });
 }
 

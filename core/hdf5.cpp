@@ -280,13 +280,13 @@ std::vector<int> read_int_attribute(hid_t object, const std::string& name) {
 
 void require_stored(hid_t dataset, const std::string& name) {
   // Deflate compresses at most 1032 to 1. Small datasets may consist of fill values only.
-  constexpr double kMostPacked = 1100, kSmall = 1 << 20;
+  constexpr double kMaxPacked = 1100, kSmall = 1 << 20;
   double claimed = 1;
   for (const hsize_t n : extents(dataset)) claimed *= static_cast<double>(n);
   const Handle type = own(H5Dget_type(dataset), "reading a type");
   claimed *= static_cast<double>(H5Tget_size(type.get()));
   const auto stored = static_cast<double>(stored_bytes(dataset));
-  if (claimed > kSmall + kMostPacked * stored)
+  if (claimed > kSmall + kMaxPacked * stored)
     throw RunError(fmt::format("{}: the dataset claims {:.3g} bytes, and the file holds {:.3g} of them.",
                                name, claimed, stored));
   // Deflated twice, a kilobyte expands to a gigabyte before its size can be checked.

@@ -3,6 +3,9 @@
 /// Progress reports of long computations, and their check for cancellation.
 
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
 
 namespace twincell {
 
@@ -33,6 +36,9 @@ class Progress {
   /// A shared do-nothing instance.
   static Progress& none();
 };
+
+/// Makes the progress of one stage, named for the user.
+using ProgressOf = std::function<std::unique_ptr<Progress>(const std::string& stage)>;
 
 inline void CancellationCheck::operator()() {
   if (++done_ % kPieces == 0) progress_.update(0, 0);  // total 0: there is no bar to draw

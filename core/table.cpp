@@ -10,14 +10,14 @@
 #include <sstream>
 #include <string_view>
 
-#include "core/counted.hpp"
 #include "core/error.hpp"
+#include "core/plural.hpp"
 #include "core/table_text.hpp"
 
 namespace twincell {
 namespace {
 
-/// The number of a field, NaN for an empty one; nothing if it is no finite number.
+/// The number of a field, NaN for an empty one; nothing if it is not a finite number.
 std::optional<double> number_of(std::string_view field) {
   if (field.empty() || field == "nan" || field == "NaN") return std::numeric_limits<double>::quiet_NaN();
   if (field == "True" || field == "true") return 1;  // as pandas writes
@@ -72,7 +72,7 @@ Table read_table(const std::filesystem::path& path) {
       continue;
     }
     if (fields.size() != table.names.size())
-      throw InputError(where, fmt::format("has {}; the header line has {}", counted(fields.size(), "field"),
+      throw InputError(where, fmt::format("has {}; the header line has {}", plural(fields.size(), "field"),
                                           table.names.size()));
     require_same_index(fields, twin, table.names.front(), where);
     for (std::size_t c = 0; c < fields.size(); ++c) {

@@ -11,7 +11,7 @@ namespace twincell {
 
 /// Named columns.
 struct Table {
-  /// First field of a column that is no finite number.
+  /// First field of a column that is not a finite number.
   struct Text {
     long line = 0;
     std::string word;

@@ -65,6 +65,11 @@ std::vector<std::string_view> fields_of(std::string_view line) {
   }
 }
 
+std::vector<std::string> field_texts(std::string_view line) {
+  const std::vector<std::string_view> fields = fields_of(line);
+  return {fields.begin(), fields.end()};
+}
+
 std::optional<std::size_t> twin_of_index(const std::vector<std::string>& names) {
   if (names.empty() || names.front().empty()) return {};
   const auto twin = std::find(names.begin() + 1, names.end(), names.front());

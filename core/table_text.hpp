@@ -21,6 +21,9 @@ std::string read_table_text(const std::filesystem::path& file);
 /// stays doubled (RFC 4180). A line that ends in a comma has an empty last field.
 std::vector<std::string_view> fields_of(std::string_view line);
 
+/// The same as strings.
+std::vector<std::string> field_texts(std::string_view line);
+
 /// Column with the name of the first one. pandas writes the index of a table as the first column, and an
 /// index that is also a column has its name: such a column may occur twice, with equal values
 /// (require_same_index).

@@ -5,7 +5,7 @@
 #include <functional>
 #include <map>
 
-#include "calibration/drive/track_film.hpp"
+#include "calibration/film/track_film.hpp"
 #include "core/error.hpp"
 #include "imaging/disc/position_error.hpp"
 #include "imaging/preprocess/flat_field.hpp"
@@ -54,12 +54,28 @@ struct Beads {
   std::vector<std::vector<double>> columns{std::size(kColumns)};  ///< as kColumns; empty where `of` is null
   std::vector<std::int64_t> frame;
   std::vector<std::uint8_t> tracer, edge, overlap;
+
+  void add(const std::vector<imaging::Detection>& detected, std::int64_t number) {
+    for (const imaging::Detection& b : detected) {
+      for (std::size_t c = 0; c < std::size(kColumns); ++c)
+        if (kColumns[c].of != nullptr) columns[c].push_back(kColumns[c].of(b));
+      frame.push_back(number);
+      tracer.push_back(b.tracer ? 1 : 0);
+      edge.push_back(b.edge ? 1 : 0);
+      overlap.push_back(b.overlap ? 1 : 0);
+    }
+  }
 };
 
 struct FrameReport {
   std::size_t beads;
   double blur_px;
   std::map<imaging::Verdict, std::size_t> dropped;
+
+  explicit FrameReport(const imaging::Located& located)
+      : beads(located.beads.size()), blur_px(located.blur_px) {
+    for (const imaging::Detection& b : located.dropped) ++dropped[b.verdict];
+  }
 };
 
 py::dict in_words(const std::map<imaging::Verdict, std::size_t>& counts) {
@@ -129,6 +145,57 @@ imaging::LocatingRequest locating_request(const py::object& diameter, const std:
   return request;
 }
 
+/// The beads as arrays under the names of kColumns.
+py::dict columns_of(Beads beads) {
+  py::dict columns;
+  for (std::size_t c = 0; c < std::size(kColumns); ++c) {
+    const std::string name = kColumns[c].name;
+    columns[py::str(name)] = kColumns[c].of != nullptr ? array_of(std::move(beads.columns[c]))
+                             : name == "frame"         ? array_of(std::move(beads.frame))
+                             : name == "tracer"        ? array_of(std::move(beads.tracer))
+                             : name == "edge"          ? array_of(std::move(beads.edge))
+                                                       : array_of(std::move(beads.overlap));
+  }
+  return columns;
+}
+
+/// The options with which the same beads are found again.
+py::dict settings_of(const imaging::LocatorOptions& locator, const imaging::LocatingRequest& request,
+                     const std::string& said_frames) {
+  py::list diameters;
+  diameters.append(locator.diameter_px);
+  for (const double other : locator.other_diameters_px) diameters.append(other);
+  py::dict settings;
+  settings["diameter"] = diameters;
+  settings["locator"] = locator.finder;
+  settings["min_score"] = locator.find.min_score;
+  settings["min_explained"] = locator.judge.min_score;
+  settings["refine"] = locator.refine.method;
+  settings[locator.preprocess.bright ? "bright" : "dark"] = true;
+  settings["flat"] = request.flat;
+  settings["background"] = request.background;
+  settings["roi"] = request.roi;
+  settings["mask"] = request.mask;
+  settings["frames"] = said_frames;
+  return settings;
+}
+
+/// What was found in each frame, as dicts.
+py::list per_frame(const std::vector<FrameReport>& reports, const imaging::FrameRange& range,
+                   const imaging::MotionInExposure& motion) {
+  py::list all;
+  for (std::size_t f = 0; f < reports.size(); ++f) {
+    py::dict one;
+    one["frame"] = range.number(static_cast<std::int64_t>(f));
+    one["beads"] = reports[f].beads;
+    one["blur_px"] = reports[f].blur_px;
+    if (motion.claimed(f)) one["path_px"] = motion.path(f);
+    one["dropped"] = in_words(reports[f].dropped);
+    all.append(one);
+  }
+  return all;
+}
+
 py::object locate_beads_of(const py::object& said, imaging::LocatingRequest request, int threads,
                            const py::object& callback) {
   const std::string said_frames = request.frames;
@@ -149,19 +216,10 @@ py::object locate_beads_of(const py::object& said, imaging::LocatingRequest requ
     imaging::locate_stack(
         ahead, configuration.locator, n_threads,
         [&](std::int64_t index, const cv::Mat&, const imaging::Located& as_located) {
-          const std::int64_t frame = range.number(index);
           const imaging::Located located = imaging::in_whole_picture(as_located, region);
-          for (const imaging::Detection& b : located.beads) {
-            for (std::size_t c = 0; c < std::size(kColumns); ++c)
-              if (kColumns[c].of != nullptr) beads.columns[c].push_back(kColumns[c].of(b));
-            beads.frame.push_back(frame);
-            beads.tracer.push_back(b.tracer ? 1 : 0);
-            beads.edge.push_back(b.edge ? 1 : 0);
-            beads.overlap.push_back(b.overlap ? 1 : 0);
-          }
+          beads.add(located.beads, range.number(index));
           motion.add(located);
-          FrameReport report{located.beads.size(), located.blur_px, {}};
-          for (const imaging::Detection& b : located.dropped) ++report.dropped[b.verdict];
+          FrameReport report(located);
           for (const auto& [why, count] : report.dropped) left_out[why] += count;
           reports.push_back(std::move(report));
         },
@@ -170,48 +228,13 @@ py::object locate_beads_of(const py::object& said, imaging::LocatingRequest requ
   });
   imaging::check_flat(request.flat, found.locator.preprocess.bright);
 
-  py::dict columns;
-  for (std::size_t c = 0; c < std::size(kColumns); ++c) {
-    const std::string name = kColumns[c].name;
-    columns[py::str(name)] = kColumns[c].of != nullptr ? array_of(std::move(beads.columns[c]))
-                             : name == "frame"         ? array_of(std::move(beads.frame))
-                             : name == "tracer"        ? array_of(std::move(beads.tracer))
-                             : name == "edge"          ? array_of(std::move(beads.edge))
-                                                       : array_of(std::move(beads.overlap));
-  }
-  // The options with which the same beads are found again.
-  py::list diameters;
-  diameters.append(found.locator.diameter_px);
-  for (const double other : found.locator.other_diameters_px) diameters.append(other);
-  py::dict settings;
-  settings["diameter"] = diameters;
-  settings["locator"] = found.locator.finder;
-  settings["min_score"] = found.locator.find.min_score;
-  settings["min_explained"] = found.locator.judge.min_score;
-  settings["refine"] = found.locator.refine.method;
-  settings[found.locator.preprocess.bright ? "bright" : "dark"] = true;
-  settings["flat"] = request.flat;
-  settings["background"] = request.background;
-  settings["roi"] = request.roi;
-  settings["mask"] = request.mask;
-  settings["frames"] = said_frames;
-  py::list per_frame;
-  for (std::size_t f = 0; f < reports.size(); ++f) {
-    py::dict one;
-    one["frame"] = range.number(static_cast<std::int64_t>(f));
-    one["beads"] = reports[f].beads;
-    one["blur_px"] = reports[f].blur_px;
-    if (motion.claimed(f)) one["path_px"] = motion.path(f);
-    one["dropped"] = in_words(reports[f].dropped);
-    per_frame.append(one);
-  }
   py::dict report;
-  report["settings"] = settings;
+  report["settings"] = settings_of(found.locator, request, said_frames);
   report["settings_frame"] = found.frame;
   report["contrast"] = found.locator.preprocess.contrast;
   report["left_out"] = in_words(left_out);
-  report["frames"] = per_frame;
-  return py::make_tuple(columns, report);
+  report["frames"] = per_frame(reports, range, motion);
+  return py::make_tuple(columns_of(std::move(beads)), report);
 }
 
 struct TrackCall {
@@ -290,11 +313,8 @@ py::object track(const py::object& said, TrackCall call, const py::object& callb
   return py::cast(trajectory);
 }
 
-}  // namespace
-
-void bind_locating(py::module_& module) {
+void bind_locate(py::module_& module) {
   const imaging::LocatorOptions locator;
-  const imaging::LinkOptions link;
   module.def(
       "locate",
       [](const py::object& stack, const py::object& diameter, const std::string& finder, double min_score,
@@ -312,6 +332,11 @@ void bind_locating(py::module_& module) {
       py::arg("flat") = "", py::arg("background") = "", py::arg("roi") = "", py::arg("mask") = "",
       py::arg("frames") = "", py::arg("threads") = 0, py::arg("callback") = py::none(),
       header_text("imaging/track/locate_stack.hpp", "locate_stack"));
+}
+
+void bind_track(py::module_& module) {
+  const imaging::LocatorOptions locator;
+  const imaging::LinkOptions link;
   module.def(
       "track",
       [](const py::object& stack, const std::optional<std::filesystem::path>& output,
@@ -369,7 +394,7 @@ void bind_locating(py::module_& module) {
       py::arg("trust_stated_drive") = false, py::arg("shortest") = 1,
       py::arg("columns") = std::map<std::string, std::string>{}, py::arg("picture_size") = py::none(),
       py::arg("threads") = 0, py::arg("callback") = py::none(),
-      (summary_text("calibration/drive/track_film.hpp", "track_film") +
+      (summary_text("calibration/film/track_film.hpp", "track_film") +
        "\n\nstack: as for `locate`; or a table of located beads, a DataFrame or the name of a CSV file, with "
        "columns frame, x, y and optionally radius or diameter, sigma_x, sigma_y, tracer. output: H5MD file "
        "to write; "
@@ -387,6 +412,13 @@ void bind_locating(py::module_& module) {
        "picture_size: width and height of its frames, px. Options as those of `twincell track` "
        "(docs/tracking.md).")
           .c_str());
+}
+
+}  // namespace
+
+void bind_locating(py::module_& module) {
+  bind_locate(module);
+  bind_track(module);
 }
 
 }  // namespace twincell::python

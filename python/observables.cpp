@@ -5,7 +5,7 @@
 #include <cmath>
 #include <complex>
 
-#include "analysis/neighbours/bond_order.hpp"
+#include "analysis/neighbours/bond_orientation.hpp"
 #include "analysis/neighbours/neighbours.hpp"
 #include "analysis/neighbours/voronoi.hpp"
 #include "analysis/observable/observable.hpp"
@@ -90,16 +90,20 @@ constexpr auto kOrder = [](const Bonds& bonds) {
   return analysis::bond_order(bonds.neighbours, bonds.weight);
 };
 
-}  // namespace
+constexpr double kCutoff = 1.2;  // sigma, between touching beads and the next shell (neighbour_cutoff)
 
-void bind_observables(py::module_& module) {
-  constexpr double kCutoff = 1.2;  // between touching beads and the next shell (neighbour_cutoff)
-  const std::string points_text =
-      "\n\npoints: (N, 2) as (x, z) or (N, 3) as (x, y, z), in bead diameters; NaN where a bead is missing. "
-      "box: a Box, None for open sides, or the lengths (x, z) or (x, y, z) of a periodic box.";
-  const std::string bonds_text =
-      points_text +
-      " neighbours: cutoff, delaunay or voronoi, as in `analyze`; cutoff and cell_radius as there.";
+std::string points_text() {
+  return "\n\npoints: (N, 2) as (x, z) or (N, 3) as (x, y, z), in bead diameters; NaN where a bead is "
+         "missing. "
+         "box: a Box, None for open sides, or the lengths (x, z) or (x, y, z) of a periodic box.";
+}
+
+std::string bonds_text() {
+  return points_text() +
+         " neighbours: cutoff, delaunay or voronoi, as in `analyze`; cutoff and cell_radius as there.";
+}
+
+void bind_neighbours(py::module_& module) {
   module.def(
       "neighbours",
       [](const py::object& points, const py::object& box, double cutoff) {
@@ -107,9 +111,12 @@ void bind_observables(py::module_& module) {
             analysis::find_neighbours(frame_of(points), box_of(box), checked_length("cutoff", cutoff)));
       },
       py::arg("points"), py::arg("box") = py::none(), py::arg("cutoff") = kCutoff,
-      (header_text("analysis/neighbours/neighbours.hpp", "find_neighbours") + points_text +
+      (header_text("analysis/neighbours/neighbours.hpp", "find_neighbours") + points_text() +
        "\n\nReturns a dict of arrays with one entry per bond: i, j (beads) and bond (from i to j, (n, 3)).")
           .c_str());
+}
+
+void bind_coordination(py::module_& module) {
   module.def(
       "coordination",
       [](const py::object& points, const py::object& box, const std::string& neighbours, double cutoff,
@@ -123,7 +130,10 @@ void bind_observables(py::module_& module) {
       },
       py::arg("points"), py::arg("box") = py::none(), py::arg("neighbours") = "cutoff",
       py::arg("cutoff") = kCutoff, py::arg("cell_radius") = analysis::kCellRadius,
-      ("Number of neighbours of every bead." + bonds_text).c_str());
+      ("Number of neighbours of every bead." + bonds_text()).c_str());
+}
+
+void bind_bond_order(py::module_& module) {
   module.def(
       "bond_order",
       [](const py::object& points, const py::object& box, const std::string& neighbours, double cutoff,
@@ -139,7 +149,10 @@ void bind_observables(py::module_& module) {
       },
       py::arg("points"), py::arg("box") = py::none(), py::arg("neighbours") = "cutoff",
       py::arg("cutoff") = kCutoff, py::arg("cell_radius") = analysis::kCellRadius,
-      (summary_text("analysis/neighbours/bond_order.hpp", "bond_order") + bonds_text).c_str());
+      (summary_text("analysis/neighbours/bond_orientation.hpp", "bond_order") + bonds_text()).c_str());
+}
+
+void bind_hexatic_order(py::module_& module) {
   module.def(
       "hexatic_order",
       [](const py::object& points, const py::object& box, const std::string& neighbours, double cutoff,
@@ -156,8 +169,11 @@ void bind_observables(py::module_& module) {
       py::arg("cutoff") = kCutoff, py::arg("cell_radius") = analysis::kCellRadius,
       ("Complex hexatic order psi6 = <exp(6 i phi)> of every bead (`bond_order`): phi is the angle of a bond "
        "in the plane (x, z). NaN for fewer than 2 bonds." +
-       bonds_text)
+       bonds_text())
           .c_str());
+}
+
+void bind_voronoi(py::module_& module) {
   module.def(
       "voronoi",
       [](const py::object& points, const py::object& box, double cell_radius) {
@@ -168,10 +184,20 @@ void bind_observables(py::module_& module) {
         return d;
       },
       py::arg("points"), py::arg("box") = py::none(), py::arg("cell_radius") = analysis::kCellRadius,
-      (header_text("analysis/neighbours/voronoi.hpp", "voronoi_cells") + points_text +
+      (header_text("analysis/neighbours/voronoi.hpp", "voronoi_cells") + points_text() +
        "\n\nReturns a dict of arrays: i, j, bond and edge (length of the shared edge) with one entry per "
        "bond, enclosed with one per bead.")
           .c_str());
+}
+
+}  // namespace
+
+void bind_observables(py::module_& module) {
+  bind_neighbours(module);
+  bind_coordination(module);
+  bind_bond_order(module);
+  bind_hexatic_order(module);
+  bind_voronoi(module);
 }
 
 }  // namespace twincell::python

@@ -162,35 +162,55 @@ Boundary boundary_named(const std::string& word) {
   for (const BoundaryWords& row : kBoundaries)
     if (word == row.word) return row.value;
   throw ConfigError({.file = {}, .key = "boundary"},
-                    fmt::format("'{}' is none of open, wall, periodic.", word));
+                    fmt::format("is '{}'; it must be open, wall or periodic.", word));
 }
 
 std::array<std::string, 3> boundary_words(const Box& box) {
   return {boundary_word(box.boundary[0]), boundary_word(box.boundary[1]), boundary_word(box.boundary[2])};
 }
 
+Box make_box(const std::array<double, 3>& lower, const std::array<double, 3>& upper,
+             const std::array<std::string, 3>& boundary, int dimension) {
+  Box box;
+  if (dimension != 2 && dimension != 3)
+    throw ConfigError({.file = {}, .key = "dimension"}, fmt::format("is {}; it must be 2 or 3.", dimension));
+  box.dimension = dimension;
+  for (int a = 0; a < 3; ++a) {
+    const auto k = static_cast<std::size_t>(a);
+    if (!(lower[k] < upper[k]))
+      throw ConfigError(
+          {.file = {}, .key = "upper"},
+          fmt::format("is {:g} along {}; it must be above lower, {:g}.", upper[k], "xyz"[a], lower[k]));
+    box.lower[a] = lower[k];
+    box.upper[a] = upper[k];
+    box.boundary[k] = boundary_named(boundary[k]);
+  }
+  return box;
+}
+
+py::tuple pickled_box(const Box& b) {
+  return py::make_tuple(std::array{b.lower.x(), b.lower.y(), b.lower.z()},
+                        std::array{b.upper.x(), b.upper.y(), b.upper.z()}, boundary_words(b), b.dimension,
+                        b.side_tilt);
+}
+
+Box unpickled_box(const py::tuple& state) {
+  Box b;
+  const auto lower = state[0].cast<std::array<double, 3>>(), upper = state[1].cast<std::array<double, 3>>();
+  const auto words = state[2].cast<std::array<std::string, 3>>();
+  for (std::size_t k = 0; k < 3; ++k) {
+    b.lower[static_cast<Eigen::Index>(k)] = lower[k];
+    b.upper[static_cast<Eigen::Index>(k)] = upper[k];
+    b.boundary[k] = boundary_named(words[k]);
+  }
+  b.dimension = state[3].cast<int>();
+  b.side_tilt = state[4].cast<decltype(b.side_tilt)>();
+  return b;
+}
+
 void bind_box(py::module_& module) {
   py::class_<Box>(module, "Box", header_text("trajectory/box.hpp", "Box"))
-      .def(py::init([](const std::array<double, 3>& lower, const std::array<double, 3>& upper,
-                       const std::array<std::string, 3>& boundary, int dimension) {
-             Box box;
-             if (dimension != 2 && dimension != 3)
-               throw ConfigError({.file = {}, .key = "dimension"},
-                                 fmt::format("is {}; it must be 2 or 3.", dimension));
-             box.dimension = dimension;
-             for (int a = 0; a < 3; ++a) {
-               const auto k = static_cast<std::size_t>(a);
-               if (!(lower[k] < upper[k]))
-                 throw ConfigError({.file = {}, .key = "upper"},
-                                   fmt::format("is {:g} along {}; it must be above lower, {:g}.", upper[k],
-                                               "xyz"[a], lower[k]));
-               box.lower[a] = lower[k];
-               box.upper[a] = upper[k];
-               box.boundary[k] = boundary_named(boundary[k]);
-             }
-             return box;
-           }),
-           py::arg("lower"), py::arg("upper"),
+      .def(py::init(&make_box), py::arg("lower"), py::arg("upper"),
            py::arg("boundary") = std::array<std::string, 3>{"wall", "open", "wall"}, py::arg("dimension") = 2,
            "Corners (x, y, z) in sigma, and the boundary along each axis: open, wall or periodic.")
       .def_property_readonly(
@@ -210,32 +230,16 @@ void bind_box(py::module_& module) {
       .def_property_readonly(
           "boundary", [](const Box& b) { return boundary_words(b); },
           header_text("trajectory/box.hpp", "Boundary"))
-      .def(py::pickle(
-          [](const Box& b) {
-            return py::make_tuple(std::array{b.lower.x(), b.lower.y(), b.lower.z()},
-                                  std::array{b.upper.x(), b.upper.y(), b.upper.z()}, boundary_words(b),
-                                  b.dimension, b.side_tilt);
-          },
-          [](const py::tuple& state) {
-            Box b;
-            const auto lower = state[0].cast<std::array<double, 3>>(),
-                       upper = state[1].cast<std::array<double, 3>>();
-            const auto words = state[2].cast<std::array<std::string, 3>>();
-            for (std::size_t k = 0; k < 3; ++k) {
-              b.lower[static_cast<Eigen::Index>(k)] = lower[k];
-              b.upper[static_cast<Eigen::Index>(k)] = upper[k];
-              b.boundary[k] = boundary_named(words[k]);
-            }
-            b.dimension = state[3].cast<int>();
-            b.side_tilt = state[4].cast<decltype(b.side_tilt)>();
-            return b;
-          }))
+      .def(py::pickle(&pickled_box, &unpickled_box))
       .def("__repr__", [](const Box& b) {
         return fmt::format("Box(({:g}, {:g}, {:g}), ({:g}, {:g}, {:g}), ({}, {}, {}), dimension={})",
                            b.lower.x(), b.lower.y(), b.lower.z(), b.upper.x(), b.upper.y(), b.upper.z(),
                            boundary_word(b.boundary[0]), boundary_word(b.boundary[1]),
                            boundary_word(b.boundary[2]), b.dimension);
       });
+}
+
+void bind_drive(py::module_& module) {
   py::class_<Drive>(module, "Drive", header_text("trajectory/drive.hpp", "Drive"))
       .def(py::init(
                [](double amplitude, double omega) { return Drive{.amplitude = amplitude, .omega = omega}; }),
@@ -352,6 +356,107 @@ void unwrap(std::vector<Frame>& frames, const Box& box) {
       frame.position[i] = periods.unwrapped(i, frame.position[i]);
 }
 
+/// The numbers of every frame; empty where they are not given.
+struct FrameNumbers {
+  std::vector<std::int32_t> phases;
+  std::vector<std::int64_t> cycles;
+  std::vector<double> times;
+  std::vector<std::int64_t> steps;
+  std::vector<double> heights;
+};
+
+FrameNumbers frame_numbers(const py::object& phase, const py::object& cycle, const py::object& time,
+                           const py::object& step, const py::object& plate_height, py::ssize_t frames) {
+  FrameNumbers n{.phases = numbers_of<std::int32_t>(phase, "phase", frames, "frames", -1),
+                 .cycles = numbers_of<std::int64_t>(cycle, "cycle", frames, "frames", -1),
+                 .times = numbers_of<double>(time, "time", frames, "frames"),
+                 .steps = numbers_of<std::int64_t>(step, "step", frames, "frames", -9e15),
+                 .heights = numbers_of<double>(plate_height, "plate_height", frames, "frames")};
+  require_increasing(n.times);
+  if (n.phases.empty() != n.cycles.empty())
+    throw ConfigError({.file = {}, .key = n.phases.empty() ? "phase" : "cycle"},
+                      "is missing; phase and cycle of the frames are given together.");
+  for (std::size_t t = 1; t < n.steps.size(); ++t)
+    if (n.steps[t] <= n.steps[t - 1])
+      throw ConfigError(
+          {.file = {}, .key = "step"},
+          fmt::format("is {} in frame {} and {} before; it must increase.", n.steps[t], t, n.steps[t - 1]));
+  return n;
+}
+
+/// Frames from arrays, and what their positions say.
+struct GivenFrames {
+  std::vector<Frame> frames;
+  bool missing = false;                                                   ///< a bead is missing from a frame
+  Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);  ///< corners around all positions
+};
+
+GivenFrames make_frames(const VectorArray& r, const VectorArray& v, const VectorArray& position_sigma,
+                        const FrameNumbers& n) {
+  GivenFrames given;
+  given.frames.resize(static_cast<std::size_t>(r.extent(0)));
+  for (py::ssize_t t = 0; t < r.extent(0); ++t) {
+    const auto k = static_cast<std::size_t>(t);
+    Frame& frame = given.frames[k];
+    frame.step = n.steps.empty() ? t : n.steps[k];
+    frame.time = n.times.empty() ? static_cast<double>(frame.step) : n.times[k];
+    if (!n.phases.empty()) frame.phase = n.phases[k], frame.cycle = n.cycles[k];
+    if (!n.heights.empty()) frame.plate_height = n.heights[k];
+    frame.position = r.of(t, 0);
+    if (v.given()) frame.velocity = v.of(t, 0);
+    if (position_sigma.given()) frame.position_sigma = position_sigma.of(t, std::nan(""));
+    for (Vec3& p : frame.position) {
+      if (!p.allFinite()) {
+        p.setConstant(std::nan(""));
+        given.missing = true;
+        continue;
+      }
+      given.low = given.low.cwiseMin(p);
+      given.high = given.high.cwiseMax(p);
+    }
+  }
+  return given;
+}
+
+/// The box that is stated; without one, a box open on all sides around the beads.
+/// \param components of the positions: 2 or 3
+Box cell_around(const GivenFrames& given, const py::object& said_box, py::ssize_t components) {
+  Box box;
+  if (!said_box.is_none()) {
+    box = box_of(said_box);
+    if (!py::isinstance<Box>(said_box)) box.dimension = box.periodic(Axis::y) ? 3 : 2;
+    if (box.dimension == 2 && components == 3 && given.low.y() < given.high.y())
+      throw ConfigError({.file = {}, .key = "box"},
+                        "is planar, but the positions are not; three-dimensional ones need Box(dimension=3) "
+                        "or three lengths.");
+    return box;
+  }
+  Vec3 low = given.low, high = given.high;
+  box.dimension = static_cast<int>(components);
+  box.boundary = {Boundary::open, Boundary::open, Boundary::open};
+  if (!(low.array() <= high.array()).all()) low.setZero(), high.setOnes();
+  box.lower = low - Vec3::Constant(0.5);
+  box.upper = high + Vec3::Constant(0.5);
+  return box;
+}
+
+/// Checks the frames and copies them. Slots without a bead are marked as empty.
+SharedFrames in_memory(TrajectoryInfo info, GivenFrames& given, const char* name) {
+  SharedFrames memory(std::move(info));
+  for (std::size_t t = 0; t < given.frames.size(); ++t) {
+    Frame& frame = given.frames[t];
+    if (given.missing) {
+      frame.id.resize(memory.info().n_beads, -1);
+      for (std::size_t i = 0; i < memory.info().n_beads; ++i)
+        if (frame.position[i].allFinite()) frame.id[i] = static_cast<std::int64_t>(i);
+    }
+    require_ranges(frame, t, memory.info(), name);
+    require_filled_slots(frame, t, name);
+    memory.append(frame);
+  }
+  return memory;
+}
+
 std::shared_ptr<Trajectory> from_arrays(const py::object& positions, const py::object& velocities,
                                         const py::object& position_sigma, const py::object& radii,
                                         const py::object& masses, const py::object& tracers,
@@ -371,85 +476,25 @@ std::shared_ptr<Trajectory> from_arrays(const py::object& positions, const py::o
   info.phases_per_cycle = phases_per_cycle;
   if (source != "simulation" && source != "experiment" && source != "unknown")
     throw ConfigError({.file = {}, .key = "source"},
-                      fmt::format("'{}' is none of simulation, experiment, unknown.", source));
+                      fmt::format("is '{}'; it must be simulation, experiment or unknown.", source));
   info.source = source;
   info.radius = numbers_of<double>(radii, "radii", beads, "beads");
   info.mass = numbers_of<double>(masses, "masses", beads, "beads");
   info.tracer = numbers_of<std::uint8_t>(tracers, "tracers", beads, "beads", 0, 1);
   info.provenance_json = provenance_of("twincell.Trajectory.from_arrays (Python)").to_json();
-  const auto phases = numbers_of<std::int32_t>(phase, "phase", frames, "frames", -1);
-  const auto cycles = numbers_of<std::int64_t>(cycle, "cycle", frames, "frames", -1);
-  const auto times = numbers_of<double>(time, "time", frames, "frames");
-  const auto steps = numbers_of<std::int64_t>(step, "step", frames, "frames", -9e15);
-  const auto heights = numbers_of<double>(plate_height, "plate_height", frames, "frames");
-  require_increasing(times);
-  if (phases.empty() != cycles.empty())
-    throw ConfigError({.file = {}, .key = phases.empty() ? "phase" : "cycle"},
-                      "is missing; phase and cycle of the frames are given together.");
-  for (std::size_t t = 1; t < steps.size(); ++t)
-    if (steps[t] <= steps[t - 1])
-      throw ConfigError(
-          {.file = {}, .key = "step"},
-          fmt::format("is {} in frame {} and {} before; it must increase.", steps[t], t, steps[t - 1]));
-  bool missing = false;
-  Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);
-  std::vector<Frame> all(static_cast<std::size_t>(frames));
-  for (py::ssize_t t = 0; t < frames; ++t) {
-    const auto k = static_cast<std::size_t>(t);
-    Frame& frame = all[k];
-    frame.step = steps.empty() ? t : steps[k];
-    frame.time = times.empty() ? static_cast<double>(frame.step) : times[k];
-    if (!phases.empty()) frame.phase = phases[k], frame.cycle = cycles[k];
-    if (!heights.empty()) frame.plate_height = heights[k];
-    frame.position = r.of(t, 0);
-    if (v.given()) frame.velocity = v.of(t, 0);
-    if (s.given()) frame.position_sigma = s.of(t, std::nan(""));
-    for (Vec3& p : frame.position) {
-      if (!p.allFinite()) {
-        p.setConstant(std::nan(""));
-        missing = true;
-        continue;
-      }
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
-  }
+  const FrameNumbers numbers = frame_numbers(phase, cycle, time, step, plate_height, frames);
+  GivenFrames given = make_frames(r, v, s, numbers);
   info.columns = {.velocity = v.given(),
-                  .identity = missing,
-                  .phase = !phases.empty(),
-                  .plate_height = !heights.empty(),
+                  .identity = given.missing,
+                  .phase = !numbers.phases.empty(),
+                  .plate_height = !numbers.heights.empty(),
                   .position_sigma = s.given()};
-  if (!said_box.is_none()) {
-    info.box = box_of(said_box);
-    if (!py::isinstance<Box>(said_box)) info.box.dimension = info.box.periodic(Axis::y) ? 3 : 2;
-    if (info.box.dimension == 2 && r.extent(2) == 3 && low.y() < high.y())
-      throw ConfigError({.file = {}, .key = "box"},
-                        "is planar, but the positions are not; three-dimensional ones need Box(dimension=3) "
-                        "or three lengths.");
-    unwrap(all, info.box);
-  } else {  // open on all sides, around the beads
-    info.box.dimension = r.extent(2);
-    info.box.boundary = {Boundary::open, Boundary::open, Boundary::open};
-    if (!(low.array() <= high.array()).all()) low.setZero(), high.setOnes();
-    info.box.lower = low - Vec3::Constant(0.5);
-    info.box.upper = high + Vec3::Constant(0.5);
-  }
+  info.box = cell_around(given, said_box, r.extent(2));
+  if (!said_box.is_none()) unwrap(given.frames, info.box);
   const char* const name = "from_arrays";
   require_ranges(info, name);
-  require_order(phases, cycles, name);
-  SharedFrames memory(std::move(info));
-  for (std::size_t t = 0; t < all.size(); ++t) {
-    Frame& frame = all[t];
-    if (missing) {
-      frame.id.resize(memory.info().n_beads, -1);
-      for (std::size_t i = 0; i < memory.info().n_beads; ++i)
-        if (frame.position[i].allFinite()) frame.id[i] = static_cast<std::int64_t>(i);
-    }
-    require_ranges(frame, t, memory.info(), name);
-    require_filled_slots(frame, t, name);
-    memory.append(frame);
-  }
-  return std::make_shared<Trajectory>(std::move(memory));
+  require_order(numbers.phases, numbers.cycles, name);
+  return std::make_shared<Trajectory>(in_memory(std::move(info), given, name));
 }
 
 }  // namespace
@@ -459,8 +504,10 @@ std::shared_ptr<Trajectory> trajectory_of_points(const py::object& points, const
   py::object frames = numpy.attr("asarray")(without_mask(points));
   if (frames.attr("ndim").cast<int>() == 2) frames = numpy.attr("expand_dims")(frames, 0);
   if (frames.attr("ndim").cast<int>() != 3)
-    throw ConfigError({.file = {}, .key = "trajectory"},
-                      "is an array of another shape than (frames, beads, 2 or 3) or (beads, 2 or 3).");
+    throw ConfigError(
+        {.file = {}, .key = "trajectory"},
+        fmt::format("must have the shape (frames, beads, 2 or 3) or (beads, 2 or 3); it has {}.",
+                    py::str(frames.attr("shape")).cast<std::string>()));
   const py::ssize_t n = py::len(frames);
   const py::object none = py::none();
   return from_arrays(frames, none, none, none, none, none, numpy.attr("zeros")(n), numpy.attr("arange")(n),
@@ -525,10 +572,7 @@ std::string of_frame_text(const std::string& what, const std::string& of_bead) {
          " of every slot in frame t; None if the trajectory has no such column. In C++: " + of_bead;
 }
 
-}  // namespace
-
-void bind_trajectory(py::module_& module) {
-  bind_box(module);
+void bind_column(py::module_& module) {
   py::class_<Column>(
       module, "Column",
       "A vector per bead in every frame: column[t] is a read-only array (n_beads, 3) over the memory of the "
@@ -560,7 +604,9 @@ void bind_trajectory(py::module_& module) {
             return dtype.is_none() ? py::object(all) : all.attr("astype")(dtype);
           },
           py::arg("dtype") = py::none());
+}
 
+void bind_contacts(py::module_& module) {
   py::class_<Contacts>(
       module, "Contacts",
       "The contacts of every frame: contacts[t] is a read-only structured array over the memory of the "
@@ -571,15 +617,12 @@ void bind_trajectory(py::module_& module) {
           "__getitem__",
           [](const Contacts& c, py::ssize_t t) { return c.at(index_of(t, c.trajectory->n_frames())); },
           py::arg("frame"), header_text(kHeader, "ContactForce"));
+}
 
-  const auto column = [](bool Columns::*has, std::vector<Vec3> Frame::*member) {
-    return [has, member](const std::shared_ptr<Trajectory>& t) -> py::object {
-      if (has != nullptr && !(t->info().columns.*has)) return py::none();
-      return py::cast(Column{t, member});
-    };
-  };
-  py::class_<Trajectory, std::shared_ptr<Trajectory>>(module, "Trajectory",
-                                                      header_text(kHeader, "TrajectorySource"))
+using TrajectoryClass = py::class_<Trajectory, std::shared_ptr<Trajectory>>;
+
+void bind_making(TrajectoryClass& bound) {
+  bound
       .def_static(
           "open", [](const std::filesystem::path& path) { return std::make_shared<Trajectory>(path); },
           py::arg("path"), header_text("trajectory/formats/h5md_file.hpp", "H5mdReader"))
@@ -596,19 +639,18 @@ void bind_trajectory(py::module_& module) {
           "positions, numbers of beads (beads,), numbers of frames (frames,). box: a Box, or the lengths (x, "
           "z) "
           "or (x, y, z) of a periodic one; without it the cell is open on all sides. Arrays are copied.")
-      .def("write", &write, py::arg("path"), header_text("trajectory/formats/h5md_file.hpp", "H5mdWriter"))
-      .def("__len__", &Trajectory::n_frames)
-      .def_property_readonly("n_frames", &Trajectory::n_frames, "Number of frames.")
-      .def_property_readonly(
-          "n_beads", [](const Trajectory& t) { return t.info().n_beads; },
-          "Number of slots: slot i is the same bead in every frame.")
-      .def_property_readonly(
-          "name", [](const Trajectory& t) { return t.source().name(); }, "The file, or \"memory\".")
-      .def_property_readonly("_file",
-                             [](const Trajectory& t) {
-                               const auto file = t.file();
-                               return file ? std::optional(file->path) : std::nullopt;
-                             })
+      .def("write", &write, py::arg("path"), header_text("trajectory/formats/h5md_file.hpp", "H5mdWriter"));
+}
+
+/// The columns of the beads.
+void bind_bead_columns(TrajectoryClass& bound) {
+  const auto column = [](bool Columns::*has, std::vector<Vec3> Frame::*member) {
+    return [has, member](const std::shared_ptr<Trajectory>& t) -> py::object {
+      if (has != nullptr && !(t->info().columns.*has)) return py::none();
+      return py::cast(Column{t, member});
+    };
+  };
+  bound
       .def_property_readonly("positions", column(nullptr, &Frame::position),
                              of_frame_text("x, y, z", header_text(kHeader, "Frame::position")).c_str())
       .def_property_readonly("velocities", column(&Columns::velocity, &Frame::velocity),
@@ -625,7 +667,12 @@ void bind_trajectory(py::module_& module) {
             return py::cast(Contacts{t});
           },
           "Contacts: contacts[t] has those of frame t with their forces. None if the trajectory does not "
-          "store them (simulate --contacts, the key time.contacts).")
+          "store them (simulate --contacts, the key time.contacts).");
+}
+
+/// The walls, and the numbers of each bead that are the same in all frames.
+void bind_bead_numbers(TrajectoryClass& bound) {
+  bound
       .def_property_readonly(
           "walls", [](const Trajectory& t) { return t.info().walls; },
           header_text(kHeader, "TrajectoryInfo::walls"))
@@ -637,7 +684,12 @@ void bind_trajectory(py::module_& module) {
           header_text(kHeader, "TrajectoryInfo::mass"))
       .def_property_readonly(
           "tracers", [](const std::shared_ptr<Trajectory>& t) { return of_slots(t, t->info().tracer); },
-          header_text(kHeader, "TrajectoryInfo::tracer"))
+          header_text(kHeader, "TrajectoryInfo::tracer"));
+}
+
+/// The numbers of each frame.
+void bind_frame_columns(TrajectoryClass& bound) {
+  bound
       .def_property_readonly(
           "step", [](Trajectory& t) { return of_frames(t, [](const Frame& f) { return f.step; }); },
           header_text(kHeader, "Frame::step"))
@@ -664,7 +716,12 @@ void bind_trajectory(py::module_& module) {
             if (!t.info().columns.plate_height) return py::none();
             return of_frames(t, [](const Frame& f) { return f.plate_height; });
           },
-          header_text(kHeader, "Frame::plate_height"))
+          header_text(kHeader, "Frame::plate_height"));
+}
+
+/// What the trajectory states of its cell, drive and origin.
+void bind_info(TrajectoryClass& bound) {
+  bound
       .def_property_readonly(
           "box", [](const Trajectory& t) { return t.info().box; }, header_text("trajectory/box.hpp", "Box"))
       .def_property_readonly(
@@ -700,12 +757,37 @@ void bind_trajectory(py::module_& module) {
             return t.info().tracking_json.empty() ? py::object(py::none())
                                                   : from_json(t.info().tracking_json);
           },
-          header_text(kHeader, "TrajectoryInfo::tracking_json"))
-      .def(py::pickle(&pickled, &unpickled))
-      .def("__repr__", [](const Trajectory& t) {
-        return fmt::format("<twincell.Trajectory of {}: {} frames of {} beads, {}>", t.source().name(),
-                           t.n_frames(), t.info().n_beads, t.info().source);
+          header_text(kHeader, "TrajectoryInfo::tracking_json"));
+}
+
+}  // namespace
+
+void bind_trajectory(py::module_& module) {
+  bind_box(module);
+  bind_drive(module);
+  bind_column(module);
+  bind_contacts(module);
+  TrajectoryClass bound(module, "Trajectory", header_text(kHeader, "TrajectorySource"));
+  bind_making(bound);
+  bound.def("__len__", &Trajectory::n_frames)
+      .def_property_readonly("n_frames", &Trajectory::n_frames, "Number of frames.")
+      .def_property_readonly(
+          "n_beads", [](const Trajectory& t) { return t.info().n_beads; },
+          "Number of slots: slot i is the same bead in every frame.")
+      .def_property_readonly(
+          "name", [](const Trajectory& t) { return t.source().name(); }, "The file, or \"memory\".")
+      .def_property_readonly("_file", [](const Trajectory& t) {
+        const auto file = t.file();
+        return file ? std::optional(file->path) : std::nullopt;
       });
+  bind_bead_columns(bound);
+  bind_bead_numbers(bound);
+  bind_frame_columns(bound);
+  bind_info(bound);
+  bound.def(py::pickle(&pickled, &unpickled)).def("__repr__", [](const Trajectory& t) {
+    return fmt::format("<twincell.Trajectory of {}: {} frames of {} beads, {}>", t.source().name(),
+                       t.n_frames(), t.info().n_beads, t.info().source);
+  });
 }
 
 }  // namespace twincell::python

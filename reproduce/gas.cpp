@@ -397,7 +397,7 @@ void add_series(std::vector<Series>& all, const std::string& title, const std::v
   if (!solid.x.empty()) all.push_back(solid);
 }
 
-analysis::figure_style::Axis w_axis() {
+analysis::figure_style::PlotAxis w_axis() {
   return {.label = "W = V_p^2/(d g)", .logarithmic = true};
 }
 

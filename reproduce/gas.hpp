@@ -149,13 +149,13 @@ void add_series(std::vector<Series>& all, const std::string& title, const std::v
                 const std::function<Estimate(const Estimate&, double)>& of_value = {});
 
 /// The axis W = V_p^2/(d g), logarithmic.
-analysis::figure_style::Axis w_axis();
+analysis::figure_style::PlotAxis w_axis();
 /// A figure of series with error bars, and of lines. The ranges of its axes grow to hold the series.
 struct SeriesFigure {
   std::string name;
   char panel;         ///< letter of the panel in the paper's figure; 0: none
   std::string title;  ///< what is drawn and of which system, as enhanced text
-  analysis::figure_style::Axis x, y;
+  analysis::figure_style::PlotAxis x, y;
   std::string caption;
   std::string marks = {};                 ///< gnuplot commands before the plot
   std::vector<std::string> entries = {};  ///< clauses after those of the series: marks in the key

@@ -71,7 +71,7 @@ std::vector<Target> targets_of(const Packings& all) {
 }
 
 analysis::Figure figure_of(const Packings& all) {
-  constexpr double kSide = 6;  // sigma; enough rows to show the orientation
+  constexpr double kCornerSide_sigma = 6;  // enough rows to show the orientation
   analysis::Figure f{
       .name = "p1-fig2", .title = "Orientations of the lattice at a side wall", .width = 720, .height = 330};
   f.plot = "set multiplot\nunset grid\n";
@@ -83,7 +83,7 @@ analysis::Figure figure_of(const Packings& all) {
     f.data += fmt::format("# orientation {}, beads at the left wall: x, z, radius\n", o.name);
     for (std::size_t i = 0; i < crystal->moment.frame.position.size(); ++i) {
       const Vec3& at = crystal->moment.frame.position[i];
-      if (at.x() < kSide && at.z() < kSide)
+      if (at.x() < kCornerSide_sigma && at.z() < kCornerSide_sigma)
         f.data += fmt::format("{:.5f} {:.5f} {:g}\n", at.x(), at.z(), radius_of(crystal->radius, i));
     }
     f.data += "\n\n";
@@ -95,7 +95,7 @@ analysis::Figure figure_of(const Packings& all) {
         "'#888888' front\nset object 2 rectangle from -0.5,-0.5 to {2},0 fs solid 0.6 noborder fc rgb "
         "'#888888' front\nplot '{4}.dat' index {5} using 1:2:3 with circles fs solid border lc rgb '#333333' "
         "fc rgb '{6}'\nunset object 1\nunset object 2\n",
-        left, left + 0.29, kSide,
+        left, left + 0.29, kCornerSide_sigma,
         analysis::figure_style::panel_title("ab"[index], fmt::format("orientation {}", o.name)), f.name,
         index, o.colour);
     ++index;

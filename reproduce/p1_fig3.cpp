@@ -17,9 +17,9 @@
 #include "core/json_text.hpp"
 #include "core/table.hpp"
 #include "reproduce/is_arrested.hpp"
-#include "reproduce/own_points.hpp"
 #include "reproduce/p1_scene.hpp"
 #include "reproduce/reproduction.hpp"
+#include "reproduce/user_points.hpp"
 
 namespace twincell::reproduce {
 
@@ -140,18 +140,16 @@ sweep::Plan plan_of(const Size& size, int layers, bool random, bool convecting, 
   return sweep::read_plan_text(text, fmt::format("p1-fig3, {} layers", layers));
 }
 
-json number(const std::optional<double>& value) {
-  return value ? json(*value) : json(nullptr);
-}
-
 json as_json(const Boundary& b, int cycles) {
   json j = {{"layers", b.layers}, {"start", b.start()}, {"verdict", b.verdict()}};
   if (!b.begun()) return j;
   const Onset& o = b.onset();
-  j["gamma"] = {
-      {"value", number(o.value)}, {"low", number(o.low)}, {"high", number(o.high)}, {"level", o.level}};
+  j["gamma"] = {{"value", number_or_null(o.value)},
+                {"low", number_or_null(o.low)},
+                {"high", number_or_null(o.high)},
+                {"level", o.level}};
   const auto squared = [](const std::optional<double>& gamma) {
-    return number(gamma ? std::optional(*gamma * *gamma) : std::nullopt);
+    return number_or_null(gamma ? std::optional(*gamma * *gamma) : std::nullopt);
   };
   j["k_m"] = {{"value", squared(o.value)}, {"low", squared(o.low)}, {"high", squared(o.high)}};
   j["runs"] = o.n;
@@ -165,9 +163,9 @@ json as_json(const Boundary& b, int cycles) {
   if (b.convecting) {
     const Onset& moving = b.onset_of_moving;
     j["at_rest"] = b.at_rest;
-    j["moving"] = {{"value", number(moving.value)},
-                   {"low", number(moving.low)},
-                   {"high", number(moving.high)},
+    j["moving"] = {{"value", number_or_null(moving.value)},
+                   {"low", number_or_null(moving.low)},
+                   {"high", number_or_null(moving.high)},
                    {"level", moving.level}};
   }
   return j;
@@ -259,185 +257,205 @@ Target below_experiment(const std::deque<Boundary>& all, const std::vector<Filme
   return t;
 }
 
+Target bouncing_target(const Size& size, const std::deque<Boundary>& all, int layers, bool random) {
+  constexpr double kBounceLow = 1.10, kBounceHigh = 1.35;
+  Target t{fmt::format("onset of bouncing, {}, N_l = {}", random ? "random" : "crystal", layers),
+           fmt::format("Gamma {:.2f} to {:.2f}", kBounceLow, kBounceHigh), "", Verdict::absent, ""};
+  if (const Boundary* b = find(all, layers, random, false)) {
+    t.measured = b->onset().text();
+    t.verdict = judge(estimate_of(b->onset()), kBounceLow, kBounceHigh);
+    t.runs = fmt::format("{} runs, {} cycles", b->onset().n, size.bounce_cycles);
+  }
+  return t;
+}
+
+Target crystal_above_random(const Size& size, const std::deque<Boundary>& all, int layers) {
+  Target t{fmt::format("onset of convection, N_l = {}", layers), "crystal above random", "", Verdict::absent,
+           ""};
+  const Boundary *random = find(all, layers, true, true), *crystal = find(all, layers, false, true);
+  if (random != nullptr && crystal != nullptr) {
+    t.measured =
+        fmt::format("crystal {}; random {}; 2 ln(L/L_opposite) = {:.3g}", crystal->onset().text(),
+                    random->onset().text(), std::abs(evidence_above(crystal->onset(), random->onset())));
+    t.verdict = above(crystal->onset(), random->onset());
+    t.runs =
+        fmt::format("{} and {} runs, {} cycles", crystal->onset().n, random->onset().n, size.convect_cycles);
+    if (t.verdict == Verdict::inconclusive)
+      t.reason = fmt::format("{:g} would decide", sweep::kLikelihoodDrop);
+  }
+  return t;
+}
+
+/// The paper does not state N_l of its Figs. 4 and 5. The best verdict counts, of the heights at which the
+/// slips of Fig. 5 are defined: lower beds have too few beads in bonds that can be counted.
+Target onset_of_figs_4_and_5(const Size& size, const std::deque<Boundary>& all) {
+  constexpr double kLow = kConvectionKm * 0.75, kHigh = kConvectionKm * 1.25;
+  constexpr int kMinLayersWithSlips = 20;
+  Target t{"onset of convection, random, at the N_l of Figs. 4, 5", "K_m 3.3 +- 25 %", "", Verdict::absent,
+           fmt::format("the paper does not state that N_l; the best of these from N_l = {} on, where p_s is "
+                       "defined, counts",
+                       kMinLayersWithSlips)};
+  for (const int layers : size.layers)
+    if (const Boundary* b = find(all, layers, true, true)) {
+      const Estimate onset = estimate_of(b->onset());
+      const auto squared = [](double gamma) { return gamma * gamma; };
+      const Estimate k_m{squared(onset.value), onset.low ? std::optional(squared(*onset.low)) : std::nullopt,
+                         onset.high ? std::optional(squared(*onset.high)) : std::nullopt};
+      const Verdict verdict = judge(k_m, kLow, kHigh);
+      t.measured += fmt::format("{}N_l = {}: K_m {}: {}", t.measured.empty() ? "" : ", ", layers, k_m.text(),
+                                word_of(verdict));
+      t.runs += fmt::format("{}{}", t.runs.empty() ? "" : ", ", b->onset().n);
+      if (layers >= kMinLayersWithSlips)
+        t.verdict = t.verdict == Verdict::absent ? verdict : best_of(t.verdict, verdict);
+    }
+  if (!t.runs.empty()) t.runs += fmt::format(" runs, {} cycles", size.convect_cycles);
+  return t;
+}
+
+Target bouncing_rises(const Size& size, const std::deque<Boundary>& all) {
+  Target t{"onset of bouncing rises slightly with N_l", "rising", "", Verdict::absent, ""};
+  const Boundary* low = find(all, size.layers.front(), true, false);
+  const Boundary* high = find(all, size.layers.back(), true, false);
+  if (size.layers.size() < 2) {
+    t.reason = "one N_l only at this budget";
+  } else if (low != nullptr && high != nullptr) {
+    t.measured = fmt::format("N_l = {}: {}; N_l = {}: {}", low->layers, low->onset().text(), high->layers,
+                             high->onset().text());
+    t.verdict = above(high->onset(), low->onset());
+    if (t.verdict == Verdict::inconclusive) t.reason = "the rise is smaller than what these runs can tell";
+  }
+  return t;
+}
+
+Target no_slips_in_a1(const Size& size, const std::optional<SlipCount>& crystals) {
+  Target t{fmt::format("slips of the crystal in A1, N_l = {}", kLayersOfA1), "exactly 0", "", Verdict::absent,
+           ""};
+  if (!crystals) {
+    t.reason = "the analysis has no slip count";
+  } else if (crystals->runs > 0) {
+    t.measured =
+        fmt::format("{:.0f} of {:.0f} bead-periods, Gamma 1.2 to 2.1", crystals->slips, crystals->eligible);
+    t.runs = fmt::format("{} runs, {} cycles", crystals->runs, size.convect_cycles);
+    t.verdict = judge(exact(crystals->slips), 0, 0);
+  }
+  return t;
+}
+
 std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all,
                                const std::optional<SlipCount>& crystals, const std::vector<Filmed>& filmed) {
   std::vector<Target> targets;
-  constexpr double kBounceLow = 1.10, kBounceHigh = 1.35;
   for (const int layers : size.layers)
-    for (const bool random : {true, false}) {
-      Target t{fmt::format("onset of bouncing, {}, N_l = {}", random ? "random" : "crystal", layers),
-               fmt::format("Gamma {:.2f} to {:.2f}", kBounceLow, kBounceHigh), "", Verdict::absent, ""};
-      if (const Boundary* b = find(all, layers, random, false)) {
-        t.measured = b->onset().text();
-        t.verdict = judge(estimate_of(b->onset()), kBounceLow, kBounceHigh);
-        t.runs = fmt::format("{} runs, {} cycles", b->onset().n, size.bounce_cycles);
-      }
-      targets.push_back(t);
-    }
-  for (const int layers : size.layers) {
-    Target t{fmt::format("onset of convection, N_l = {}", layers), "crystal above random", "",
-             Verdict::absent, ""};
-    const Boundary *random = find(all, layers, true, true), *crystal = find(all, layers, false, true);
-    if (random != nullptr && crystal != nullptr) {
-      t.measured =
-          fmt::format("crystal {}; random {}; 2 ln(L/L_opposite) = {:.3g}", crystal->onset().text(),
-                      random->onset().text(), std::abs(evidence_above(crystal->onset(), random->onset())));
-      t.verdict = above(crystal->onset(), random->onset());
-      t.runs = fmt::format("{} and {} runs, {} cycles", crystal->onset().n, random->onset().n,
-                           size.convect_cycles);
-      if (t.verdict == Verdict::inconclusive)
-        t.reason = fmt::format("{:g} would decide", sweep::kLikelihoodDrop);
-    }
-    targets.push_back(t);
-  }
-  {
-    // The paper does not state N_l of its Figs. 4 and 5. The best verdict counts, of the heights at which the
-    // slips of Fig. 5 are defined: lower beds have too few beads in bonds that can be counted.
-    constexpr double kLow = kConvectionKm * 0.75, kHigh = kConvectionKm * 1.25;
-    constexpr int kLowestWithSlips = 20;
-    Target t{
-        "onset of convection, random, at the N_l of Figs. 4, 5", "K_m 3.3 +- 25 %", "", Verdict::absent,
-        fmt::format("the paper does not state that N_l; the best of these from N_l = {} on, where p_s is "
-                    "defined, counts",
-                    kLowestWithSlips)};
-    for (const int layers : size.layers)
-      if (const Boundary* b = find(all, layers, true, true)) {
-        const Estimate onset = estimate_of(b->onset());
-        const auto squared = [](double gamma) { return gamma * gamma; };
-        const Estimate k_m{squared(onset.value),
-                           onset.low ? std::optional(squared(*onset.low)) : std::nullopt,
-                           onset.high ? std::optional(squared(*onset.high)) : std::nullopt};
-        const Verdict verdict = judge(k_m, kLow, kHigh);
-        t.measured += fmt::format("{}N_l = {}: K_m {}: {}", t.measured.empty() ? "" : ", ", layers,
-                                  k_m.text(), word_of(verdict));
-        t.runs += fmt::format("{}{}", t.runs.empty() ? "" : ", ", b->onset().n);
-        if (layers >= kLowestWithSlips)
-          t.verdict = t.verdict == Verdict::absent ? verdict : best_of(t.verdict, verdict);
-      }
-    if (!t.runs.empty()) t.runs += fmt::format(" runs, {} cycles", size.convect_cycles);
-    targets.push_back(t);
-  }
-  {
-    Target t{"onset of bouncing rises slightly with N_l", "rising", "", Verdict::absent, ""};
-    const Boundary* low = find(all, size.layers.front(), true, false);
-    const Boundary* high = find(all, size.layers.back(), true, false);
-    if (size.layers.size() < 2) {
-      t.reason = "one N_l only at this budget";
-    } else if (low != nullptr && high != nullptr) {
-      t.measured = fmt::format("N_l = {}: {}; N_l = {}: {}", low->layers, low->onset().text(), high->layers,
-                               high->onset().text());
-      t.verdict = above(high->onset(), low->onset());
-      if (t.verdict == Verdict::inconclusive) t.reason = "the rise is smaller than what these runs can tell";
-    }
-    targets.push_back(t);
-  }
-  {
-    Target t{fmt::format("slips of the crystal in A1, N_l = {}", kLayersOfA1), "exactly 0", "",
-             Verdict::absent, ""};
-    if (!crystals) {
-      t.reason = "the analysis has no slip count";
-    } else if (crystals->runs > 0) {
-      t.measured =
-          fmt::format("{:.0f} of {:.0f} bead-periods, Gamma 1.2 to 2.1", crystals->slips, crystals->eligible);
-      t.runs = fmt::format("{} runs, {} cycles", crystals->runs, size.convect_cycles);
-      t.verdict = judge(exact(crystals->slips), 0, 0);
-    }
-    targets.push_back(t);
-  }
+    for (const bool random : {true, false}) targets.push_back(bouncing_target(size, all, layers, random));
+  for (const int layers : size.layers) targets.push_back(crystal_above_random(size, all, layers));
+  targets.push_back(onset_of_figs_4_and_5(size, all));
+  targets.push_back(bouncing_rises(size, all));
+  targets.push_back(no_slips_in_a1(size, crystals));
   targets.push_back(below_experiment(all, filmed));
   return targets;
 }
 
-/// Values with error bars if the interval is closed, arrows for one-sided limits. Lines join values at
-/// consecutive heights and do not pass over a limit. Random and crystal points are shifted slightly to the
-/// left and right of their N_l, so that the bars do not overlap.
-analysis::Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& filmed) {
-  analysis::Figure f{
+/// Look of the onsets of one start and one verdict.
+struct Style {
+  bool random, convecting;
+  int point;
+  const char *colour, *title;
+};
+constexpr std::array<Style, 4> kStyles = {{{true, true, 9, analysis::colours::kGreen, "convection, random"},
+                                           {false, true, 7, analysis::colours::kBlue, "convection, crystal"},
+                                           {true, false, 8, analysis::colours::kGreen, "bouncing, random"},
+                                           {false, false, 6, analysis::colours::kBlue, "bouncing, crystal"}}};
+
+/// The figure so far: data blocks, the clauses of the plot command, and the ranges of the axes.
+struct Drawing {
+  analysis::Figure figure{
       .name = "p1-fig3", .title = "Onsets of bouncing and convection", .width = 640, .height = 520};
-  analysis::figure_style::Axis n_l{.label = "N_l σ"}, gamma{.label = "Γ = A ω^2/g"};
-  gamma.show(1);
-  struct Style {
-    bool random, convecting;
-    int point;
-    const char *colour, *title;
-  };
-  static constexpr std::array<Style, 4> kStyles = {
-      {{true, true, 9, analysis::colours::kGreen, "convection, random"},
-       {false, true, 7, analysis::colours::kBlue, "convection, crystal"},
-       {true, false, 8, analysis::colours::kGreen, "bouncing, random"},
-       {false, false, 6, analysis::colours::kBlue, "bouncing, crystal"}}};
-  // Onsets of the runs, one data block of values and one of limits for each style.
   std::string plot;
-  int index = 0;
-  for (const Style& style : kStyles) {
-    std::string values, limits;
-    bool limit_before = false;
-    for (const Boundary& b : all) {
-      if (b.random != style.random || b.convecting != style.convecting || !b.begun()) continue;
-      const Onset& o = b.onset();
-      const double x = b.layers + (b.random ? -0.5 : 0.5);
-      n_l.show(x);
-      for (const auto& end : {o.value, o.low, o.high})
-        if (end) gamma.show(*end);
-      const bool closed = o.value && o.low && o.high;
-      // A blank line interrupts the line that gnuplot draws.
-      if (closed && limit_before && !values.empty()) values += '\n';
-      limit_before = !closed;
-      if (closed)
-        values += fmt::format("{} {} {} {}\n", x, *o.value, *o.low, *o.high);
-      else if (o.low)
-        limits += fmt::format("{} {} 0 0.25\n", x, *o.low);
-      else if (o.high)
-        limits += fmt::format("{} {} 0 -0.25\n", x, *o.high);
-    }
-    const auto add = [&](const std::string& block, const std::string& drawn, const std::string& title) {
-      f.data += fmt::format("# {}\n{}\n\n", style.title, block.empty() ? "NaN NaN NaN NaN\n" : block);
-      plot += fmt::format("{}'{}.dat' index {} using 1:2:3:4 with {} lc rgb '{}' {}",
-                          plot.empty() ? "" : ", ", f.name, index++, drawn, style.colour, title);
-    };
-    add(values, fmt::format("yerrorlines lw {} ps 1.2 pt {}", analysis::figure_style::kLine, style.point),
-        fmt::format("title '{}'", style.title));
-    add(limits, "vectors head filled lw 1.5", "notitle");
+  int index = 0;  ///< number of the next data block
+  analysis::figure_style::PlotAxis n_l{.label = "N_l σ"}, gamma{.label = "Γ = A ω^2/g"};
+};
+
+/// Onsets of the runs in one style, one data block of values and one of limits. Values with error bars if the
+/// interval is closed, arrows for one-sided limits. Lines join values at consecutive heights and do not pass
+/// over a limit. Random and crystal points are shifted slightly to the left and right of their N_l, so that
+/// the bars do not overlap.
+void add_onsets(Drawing& d, const std::deque<Boundary>& all, const Style& style) {
+  std::string values, limits;
+  bool limit_before = false;
+  for (const Boundary& b : all) {
+    if (b.random != style.random || b.convecting != style.convecting || !b.begun()) continue;
+    const Onset& o = b.onset();
+    const double x = b.layers + (b.random ? -0.5 : 0.5);
+    d.n_l.show(x);
+    for (const auto& end : {o.value, o.low, o.high})
+      if (end) d.gamma.show(*end);
+    const bool closed = o.value && o.low && o.high;
+    // A blank line interrupts the line that gnuplot draws.
+    if (closed && limit_before && !values.empty()) values += '\n';
+    limit_before = !closed;
+    if (closed)
+      values += fmt::format("{} {} {} {}\n", x, *o.value, *o.low, *o.high);
+    else if (o.low)
+      limits += fmt::format("{} {} 0 0.25\n", x, *o.low);
+    else if (o.high)
+      limits += fmt::format("{} {} 0 -0.25\n", x, *o.high);
   }
-  // Onsets of the experiment.
-  const auto add_filmed = [&](double Filmed::*onset, int point, const char* title) {
-    std::string block;
-    for (const Filmed& p : filmed)
-      if (std::isfinite(p.*onset)) {
-        block += fmt::format("{} {}\n", p.layers, p.*onset);
-        n_l.show(p.layers);
-        gamma.show(p.*onset);
-      }
-    if (block.empty()) return;
-    f.data += fmt::format("# {}\n{}\n\n", title, block);
-    plot +=
-        fmt::format(", '{}.dat' index {} using 1:2 with linespoints lw 1 ps 1 pt {} lc rgb '{}' title '{}'",
-                    f.name, index++, point, analysis::colours::kBlack, title);
+  const auto add = [&](const std::string& block, const std::string& drawn, const std::string& title) {
+    d.figure.data += fmt::format("# {}\n{}\n\n", style.title, block.empty() ? "NaN NaN NaN NaN\n" : block);
+    d.plot += fmt::format("{}'{}.dat' index {} using 1:2:3:4 with {} lc rgb '{}' {}",
+                          d.plot.empty() ? "" : ", ", d.figure.name, d.index++, drawn, style.colour, title);
   };
-  add_filmed(&Filmed::convection, 5, "convection, experiment");
-  add_filmed(&Filmed::bouncing, 4, "bouncing, experiment");
-  plot += ", " + analysis::figure_style::stated_line_entry("paper: K_m = 3.3");
+  add(values, fmt::format("yerrorlines lw {} ps 1.2 pt {}", analysis::figure_style::kLine, style.point),
+      fmt::format("title '{}'", style.title));
+  add(limits, "vectors head filled lw 1.5", "notitle");
+}
+
+/// Onsets of the experiment as one data block, if there are any.
+void add_filmed(Drawing& d, const std::vector<Filmed>& filmed, double Filmed::*onset, int point,
+                const char* title) {
+  std::string block;
+  for (const Filmed& p : filmed)
+    if (std::isfinite(p.*onset)) {
+      block += fmt::format("{} {}\n", p.layers, p.*onset);
+      d.n_l.show(p.layers);
+      d.gamma.show(p.*onset);
+    }
+  if (block.empty()) return;
+  d.figure.data += fmt::format("# {}\n{}\n\n", title, block);
+  d.plot +=
+      fmt::format(", '{}.dat' index {} using 1:2 with linespoints lw 1 ps 1 pt {} lc rgb '{}' title '{}'",
+                  d.figure.name, d.index++, point, analysis::colours::kBlack, title);
+}
+
+/// Onsets against the height of the bed, with K_m on the right.
+analysis::Figure figure_of(const std::deque<Boundary>& all, const std::vector<Filmed>& filmed) {
+  Drawing d;
+  d.gamma.show(1);
+  for (const Style& style : kStyles) add_onsets(d, all, style);
+  add_filmed(d, filmed, &Filmed::convection, 5, "convection, experiment");
+  add_filmed(d, filmed, &Filmed::bouncing, 4, "bouncing, experiment");
+  d.plot += ", " + analysis::figure_style::stated_line_entry("paper: K_m = 3.3");
   // K_m = Gamma^2 at omega = 1: the ticks of K_m are at Gamma = sqrt(K_m).
   std::vector<std::string> ticks;
   for (const double k_m : {1.0, 2.0, 4.0, 6.0, 9.0, 12.0, 16.0, 20.0, 25.0})
     ticks.push_back(fmt::format("'{:g}' {:.6f}", k_m, std::sqrt(k_m) / kOmega));
-  f.plot = fmt::format(
+  d.figure.plot = fmt::format(
       "{}set link y2\nset y2label 'K_m = A^2 ω^2/(σ g)'\nset ytics nomirror\nset y2tics ({})\nset key "
       "maxcols 2\n"
       "{}plot {}\n",
-      analysis::figure_style::axes(n_l, gamma), fmt::join(ticks, ", "),
-      analysis::figure_style::stated_y(std::sqrt(kConvectionKm) / kOmega), plot);
-  f.caption =
+      analysis::figure_style::axes(d.n_l, d.gamma), fmt::join(ticks, ", "),
+      analysis::figure_style::stated_y(std::sqrt(kConvectionKm) / kOmega), d.plot);
+  d.figure.caption =
       "Onset of bouncing (open) and of convection (filled) against the height of the bed, from random starts "
       "(triangles) and from crystals (circles), drawn a little to the left and to the right, with 95 % "
       "intervals; arrows are one-sided limits.";
-  f.caption += filmed.empty() ? " The paper's experiment is a drawing without numbers; --data draws yours as "
-                                "connected squares."
-                              : " Connected squares: the experiment of --data.";
-  f.caption +=
+  d.figure.caption += filmed.empty()
+                          ? " The paper's experiment is a drawing without numbers; --data draws yours as "
+                            "connected squares."
+                          : " Connected squares: the experiment of --data.";
+  d.figure.caption +=
       " Dashed: the paper's onset of convection of random beds, at an N_l that it does not state. Form of "
       "Fortini & Huang 2015, Fig. 3.";
-  return f;
+  return d.figure;
 }
 
 std::vector<std::string> cheaper_of(const Size& size, const std::deque<Boundary>& all) {

@@ -165,7 +165,7 @@ analysis::Figure figure_of(const StrengthSweeps& all) {
   const int rows = static_cast<int>(all.heights.size());
   analysis::Figure f{
       .name = "p1-fig4", .title = "Granular temperature", .width = 720, .height = 80 + 370 * rows};
-  analysis::figure_style::Axis k_m{.label = "K_m = A^2 ω^2/(σ g)", .logarithmic = true},
+  analysis::figure_style::PlotAxis k_m{.label = "K_m = A^2 ω^2/(σ g)", .logarithmic = true},
       t_g{.label = "T_g/(m g σ)", .logarithmic = true};
   for (const HeightSweeps& height : all.heights)
     for (const StrengthSweep* l : {&height.random, &height.crystal})

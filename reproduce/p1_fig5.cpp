@@ -57,8 +57,9 @@ Target barrier_target(const std::string& name, const std::optional<calibration::
 
 std::vector<Target> targets_of(const HeightSweeps& all, const Barriers& fits) {
   std::vector<Target> targets;
-  constexpr const char* kFew = "fewer than two points with slips";
-  targets.push_back(barrier_target("(a) random, whole range", fits.random, kBarrier, kBarrierError, kFew));
+  constexpr const char* kTooFewPoints = "fewer than two points with slips";
+  targets.push_back(
+      barrier_target("(a) random, whole range", fits.random, kBarrier, kBarrierError, kTooFewPoints));
   if (targets.back().verdict == Verdict::fail)
     targets.back().reason = "the paper does not state its N_l, nor how far its window reaches";
   Target one{"(a) random: one line over the whole range, no break at the onset",
@@ -166,8 +167,8 @@ std::string barrier_label(const char* of, const std::optional<calibration::Curve
 /// A panel of the figure: counted slips, upper limits where the bed bounces, borders of the regions,
 /// Arrhenius lines. \param index of the panel; its two data blocks are appended to `data`
 std::string panel_of(const StrengthSweep& l, int layers, const std::string& figure, std::size_t index,
-                     const Barriers& fits, const analysis::figure_style::Axis& p_s, std::string& data) {
-  analysis::figure_style::Axis inverse{.label = "1/K_m", .low = 0};
+                     const Barriers& fits, const analysis::figure_style::PlotAxis& p_s, std::string& data) {
+  analysis::figure_style::PlotAxis inverse{.label = "1/K_m", .low = 0};
   std::string counted, none;
   const double floor = p_s.with_margin().low;
   for (const SweepPoint& r : l.points) {
@@ -239,7 +240,7 @@ analysis::Figure slip_figure(const std::string& name, const StrengthSweeps& all)
   analysis::Figure f{.name = name, .title = "Slip probability", .width = 720, .height = 60 + 370 * rows};
   const analysis::figure_style::Panels panels(all.heights.size(), 2, f.width, f.height, 2);
   f.plot = analysis::figure_style::Panels::begin();
-  analysis::figure_style::Axis p_s{.label = "p_s", .logarithmic = true};
+  analysis::figure_style::PlotAxis p_s{.label = "p_s", .logarithmic = true};
   for (const HeightSweeps& height : all.heights)
     for (const StrengthSweep* l : {&height.random, &height.crystal})
       for (const SweepPoint& r : l->points)

@@ -229,14 +229,14 @@ analysis::Figure figure_of(const Values& values, const Size& size) {
   const double finest = size.split.back();
   const analysis::figure_style::Panels panels(kQuantities.size(), kStarts.size(), f.width, f.height, 2);
   f.plot = analysis::figure_style::Panels::begin();
-  analysis::figure_style::Axis steps{.label = "steps per contact n", .logarithmic = true};
+  analysis::figure_style::PlotAxis steps{.label = "steps per contact n", .logarithmic = true};
   for (const std::string& integrator : kIntegrators)
     for (const double n : size.steps(integrator)) steps.show(n);
   int block = 0;
   std::size_t panel = 0;
   for (const Quantity& q : kQuantities)
     for (const std::string& start : kStarts) {
-      analysis::figure_style::Axis value{.label = q.label};
+      analysis::figure_style::PlotAxis value{.label = q.label};
       if (!q.relative) value.show(0);
       std::vector<std::string> curves;
       for (std::size_t g = 0; g < kGammas.size(); ++g)

@@ -15,8 +15,8 @@
 #include "analysis/report/colours.hpp"
 #include "analysis/report/figure_style.hpp"
 #include "analysis/statistics/statistics.hpp"
-#include "core/counted.hpp"
 #include "core/json_text.hpp"
+#include "core/plural.hpp"
 #include "reproduce/alternatives.hpp"
 #include "reproduce/p1_scene.hpp"
 
@@ -282,7 +282,7 @@ StrengthSweeps strength_sweeps(const Request& request, const std::string& keys, 
   all.conditions.push_back(
       fmt::format("N_l = {} (the paper does not state that of Figs. 4 and 5); {} of each start and strength, "
                   "seeds drawn from the master seed {}",
-                  fmt::join(measured, ", "), counted(size.seeds, "run"), request.seed));
+                  fmt::join(measured, ", "), plural(size.seeds, "run"), request.seed));
   if (all.heights.size() > 1)
     all.conditions.push_back(fmt::format(
         "both figures show one bed: the verdicts are those at N_l = {}, the height that meets most "
@@ -302,7 +302,7 @@ StrengthSweeps strength_sweeps(const Request& request, const std::string& keys, 
         fmt::format("every {} strength of the drive", size.every == 2 ? "second" : "fourth"));
   if (size.seeds < 4)
     all.cheaper.push_back(
-        fmt::format("{}: random beds differ by as much as onsets do", counted(size.seeds, "seed")));
+        fmt::format("{}: random beds differ by as much as onsets do", plural(size.seeds, "seed")));
   return all;
 }
 

@@ -89,7 +89,7 @@ std::vector<Target> slip_targets(const HeightSweeps& sweeps);
 analysis::Figure slip_figure(const std::string& name, const StrengthSweeps& all);
 
 /// Index of the height whose verdicts count. Both figures of the paper show one bed, so their targets are
-/// held against one height: the one that meets most of them (pass or consistent), then the one that fails
+/// compared with one height: the one that meets most of them (pass or consistent), then the one that fails
 /// fewest, then the lowest.
 std::size_t counted_height(const StrengthSweeps& sweeps);
 

@@ -14,7 +14,7 @@
 #include "core/json_text.hpp"
 #include "core/table.hpp"
 #include "reproduce/gas.hpp"
-#include "reproduce/own_points.hpp"
+#include "reproduce/user_points.hpp"
 
 namespace twincell::reproduce {
 
@@ -85,10 +85,10 @@ Exponent exponent_of(std::string name, std::vector<calibration::DataPoint> point
   std::size_t inside = 0;
   for (const calibration::DataPoint& p : e.points)
     if (const double w = p.x * p.x; w >= low && w <= high && p.y > 0) ++inside;
-  constexpr std::size_t kFewest = 3;
-  if (inside < kFewest)
+  constexpr std::size_t kMinFluidPoints = 3;
+  if (inside < kMinFluidPoints)
     e.why_not = fmt::format("{} fluid points lie within W = {:.3g} to {:.3g}, {} are needed", inside, low,
-                            high, kFewest);
+                            high, kMinFluidPoints);
   else
     e.fit = calibration::fit_curve(calibration::law_named("power"), e.points,
                                    {.low = std::sqrt(low), .high = std::sqrt(high)});

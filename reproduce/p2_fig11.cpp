@@ -98,19 +98,20 @@ Reproduction run(const Request& request) {
           "Dashed: what the paper's text states, from the circle at W = 4.52 to 1.5 times its "
           "T_z at 8.04, and 15 % below the circles, its mean change for A = 0.1 d. Form of "
           "Bhateja et al. 2016, Fig. 11."};
-  constexpr double kRise = 1.5, kFall = 0.85, kWide = 0.12;
+  constexpr double kStatedRise = 1.5, kStatedFall = 0.85,
+                   kHalfWidth_W = 0.12;  // the paper: +50 %, -15 %; a drawn dash
   const auto stated = [&](double x_1, double y_1, double x_2, double y_2) {
     figure.marks += fmt::format("set arrow from {:.6g},{:.6g} to {:.6g},{:.6g} nohead back {}\n", x_1, y_1,
                                 x_2, y_2, analysis::figure_style::kStated);
     figure.y.show(y_2);
   };
   if (const auto t = t_z(gas, 0, 0)) {
-    stated(kW[0], t->value, kW[2], kRise * t->value);
+    stated(kW[0], t->value, kW[2], kStatedRise * t->value);
     figure.entries = {analysis::figure_style::stated_line_entry("paper: +50 %; −15 %")};
   }
   for (std::size_t i = 0; i < std::size(kW); ++i)
     if (const auto t = t_z(gas, i, 0))
-      stated(kW[i] - kWide, kFall * t->value, kW[i] + kWide, kFall * t->value);
+      stated(kW[i] - kHalfWidth_W, kStatedFall * t->value, kW[i] + kHalfWidth_W, kStatedFall * t->value);
   r.figures = {series_figure(figure, all)};
   return r;
 }

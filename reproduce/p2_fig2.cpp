@@ -6,7 +6,7 @@
 
 #include "core/table.hpp"
 #include "reproduce/gas.hpp"
-#include "reproduce/own_points.hpp"
+#include "reproduce/user_points.hpp"
 
 namespace twincell::reproduce {
 
@@ -226,10 +226,10 @@ analysis::Figure figure_of(const Gas& gas, const Runs& runs, const Request& requ
           "left out of all fits. "
           "Bars at the top: windows of W of earlier experiments. Form of Bhateja et al. 2016, Fig. 2."};
   // The windows of earlier experiments lie above all points.
-  constexpr double kWindows = 1.14, kTop = 1.28;
+  constexpr double kHeightOfWindows = 1.14, kTopOfAxis = 1.28;
   figure.x.show(0.5);
   figure.x.show(135);
-  figure.y.show(kTop);
+  figure.y.show(kTopOfAxis);
   const auto window = [&](const char* who, double low, double high, double at, const char* colour) {
     figure.marks += fmt::format(
         "set arrow from {0},{2} to {1},{2} heads size graph 0.01,90 lw 1.5 lc rgb '{3}'\n"
@@ -237,8 +237,8 @@ analysis::Figure figure_of(const Gas& gas, const Runs& runs, const Request& requ
         low, high, at, colour, who, high > 100 ? high : std::sqrt(low * high), at + 0.08,
         high > 100 ? "right" : "center");
   };
-  window("Warr et al.", 0.5, 9, kWindows, "#555555");
-  window("Feitosa and Menon", 44, 135, kWindows, "#555555");
+  window("Warr et al.", 0.5, 9, kHeightOfWindows, "#555555");
+  window("Feitosa and Menon", 44, 135, kHeightOfWindows, "#555555");
   if (request.window) window("your window", request.window->first, request.window->second, -0.1, "#222222");
   return series_figure(figure, all);
 }

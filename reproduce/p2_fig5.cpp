@@ -47,77 +47,83 @@ double w_of(const GasPoint& p) {
   return kAmplitude * kAmplitude * p.at * p.at;
 }
 
-std::vector<std::pair<double, Estimate>> curve_of(const std::vector<GasPoint>& points) {
-  std::vector<std::pair<double, Estimate>> all;
+/// W and T_z of the points of a curve.
+using Curve = std::vector<std::pair<double, Estimate>>;
+
+Curve curve_of(const std::vector<GasPoint>& points) {
+  Curve all;
   for (const GasPoint& p : points)
     if (const auto t = p.get("T_bar_z")) all.emplace_back(w_of(p), *t);
   return all;
 }
 
-Reproduction run(const Request& request) {
-  const Size& size = size_for(request);
-  Gas gas(request);
-  for (const bool gravity : {false, true}) {
-    GasCurve curve{
-        .name = gravity ? "with gravity" : "without gravity",
-        .scene = fmt::format("preset = \"bhateja-2016-horizontal\"\ncell.depth = {}\nbeads.count = {}{}",
-                             size.depth, std::lround(kBeadsPerDepth * size.depth),
-                             gravity ? "" : "\ncell.gravity = 0.0"),
-        .key = "drive.omega",
-        .relative_error = size.relative_error,
-        .cycles = size.cycles,
-        .discard = 30};
-    for (const int rpm : size.rpm) curve.values.push_back(std::sqrt(w_of_rpm(rpm)));  // omega: V_p at A = d
-    gas.add(curve);
-  }
-  // Targets: constant without gravity; with gravity a maximum, and a second one when beads reach the lid.
-  Reproduction r;
-  r.title = "Bhateja et al. 2016, Fig. 5: vertical temperature in a channel shaken sideways";
-  r.complete = gas.run();
-  const auto without = curve_of(gas.points(0)), with = curve_of(gas.points(1));
-  const auto less = [](const auto& a, const auto& b) { return a.second.value < b.second.value; };
+constexpr auto kLess = [](const auto& a, const auto& b) { return a.second.value < b.second.value; };
 
-  Target constant{"without gravity: T_bar_z", "constant, variation at most 3 %", "", Verdict::absent, ""};
+GasCurve runs_of(const Size& size, bool gravity) {
+  GasCurve curve{.name = gravity ? "with gravity" : "without gravity",
+                 .scene = fmt::format(
+                     "preset = \"bhateja-2016-horizontal\"\ncell.depth = {}\nbeads.count = {}{}", size.depth,
+                     std::lround(kBeadsPerDepth * size.depth), gravity ? "" : "\ncell.gravity = 0.0"),
+                 .key = "drive.omega",
+                 .relative_error = size.relative_error,
+                 .cycles = size.cycles,
+                 .discard = 30};
+  for (const int rpm : size.rpm) curve.values.push_back(std::sqrt(w_of_rpm(rpm)));  // omega: V_p at A = d
+  return curve;
+}
+
+Target constant_target(const Curve& without) {
+  Target t{"without gravity: T_bar_z", "constant, variation at most 3 %", "", Verdict::absent, ""};
   if (without.size() >= 2) {
-    const auto [low, high] = std::minmax_element(without.begin(), without.end(), less);
+    const auto [low, high] = std::minmax_element(without.begin(), without.end(), kLess);
     const Estimate q = quotient(high->second, low->second);
-    constant.measured = fmt::format("largest over smallest {} over {} points", q.text(), without.size());
-    constant.verdict = judge(q, 1, 1.03);
+    t.measured = fmt::format("largest over smallest {} over {} points", q.text(), without.size());
+    t.verdict = judge(q, 1, 1.03);
   }
-  Target peak{"with gravity: rises, then decays to a constant", "a maximum inside the range", "",
-              Verdict::absent, ""};
+  return t;
+}
+
+Target peak_target(const Curve& with) {
+  Target t{"with gravity: rises, then decays to a constant", "a maximum inside the range", "",
+           Verdict::absent, ""};
   if (with.size() >= 3) {
-    const auto top = std::max_element(with.begin(), with.end(), less);
-    peak.measured = fmt::format("largest {} at W = {:.3g}; {} at the last, W = {:.3g}", top->second.text(),
-                                top->first, with.back().second.text(), with.back().first);
+    const auto top = std::max_element(with.begin(), with.end(), kLess);
+    t.measured = fmt::format("largest {} at W = {:.3g}; {} at the last, W = {:.3g}", top->second.text(),
+                             top->first, with.back().second.text(), with.back().first);
     const bool inside = top != with.begin() && top + 1 != with.end();
-    peak.verdict =
+    t.verdict =
         inside ? all_of({above(top->second, with.front().second), above(top->second, with.back().second)})
                : Verdict::inconclusive;
-    if (!inside) peak.reason = "the largest lies at an end of the frequencies that were run";
+    if (!inside) t.reason = "the largest lies at an end of the frequencies that were run";
   }
-  Target second{"with gravity: a second, smaller peak when beads strike the lid", "a second maximum", "",
-                Verdict::absent, ""};
+  return t;
+}
+
+Target second_peak_target(const Curve& with) {
+  Target t{"with gravity: a second, smaller peak when beads strike the lid", "a second maximum", "",
+           Verdict::absent, ""};
   if (with.size() >= 6) {
-    const auto top = std::max_element(with.begin(), with.end(), less);
+    const auto top = std::max_element(with.begin(), with.end(), kLess);
     auto dip = top;
     Verdict verdict = Verdict::inconclusive;
     for (auto p = top; p != with.end(); ++p) {
       if (p->second.value < dip->second.value) dip = p;
       if (above(p->second, dip->second) == Verdict::pass) verdict = Verdict::pass;
     }
-    second.measured = fmt::format("lowest after the peak {} at W = {:.3g}", dip->second.text(), dip->first);
-    second.verdict = verdict;
+    t.measured = fmt::format("lowest after the peak {} at W = {:.3g}", dip->second.text(), dip->first);
+    t.verdict = verdict;
     if (verdict == Verdict::pass) {
       // With one run a point, a second maximum looks the same as a bed that is in its other state there.
-      second.verdict = Verdict::inconclusive;
-      second.reason = "one seed, and at W = 113 the bed has two states, which differ as much";
+      t.verdict = Verdict::inconclusive;
+      t.reason = "one seed, and at W = 113 the bed has two states, which differ as much";
     }
   } else {
-    second.reason = "too few frequencies at this budget";
+    t.reason = "too few frequencies at this budget";
   }
-  r.targets = {peak, second, constant};
-  // Figure.
+  return t;
+}
+
+analysis::Figure figure_of(const Curve& without, const Curve& with) {
   std::vector<Series> series;
   for (const bool gravity : {true, false}) {
     Series s{.title = gravity ? "with gravity" : "without gravity", .x = {}, .y = {}};
@@ -127,16 +133,7 @@ Reproduction run(const Request& request) {
     }
     series.push_back(s);
   }
-  r.table = "  the key is omega; W = 100 omega^2\n" + gas.table();
-  r.measured = gas.as_json();
-  r.conditions = gas.conditions();
-  r.runs = gas.runs_text();
-  r.cheaper = gas.cheaper();
-  if (size.depth < 35)
-    r.cheaper.push_back(fmt::format("period of {:g} d along y, {} beads, where the paper has 3000 (35 d)",
-                                    size.depth, std::lround(kBeadsPerDepth * size.depth)));
-  r.cheaper.push_back(fmt::format("{} frequencies", size.rpm.size()));
-  r.figures = {series_figure(
+  return series_figure(
       {.name = "p2-fig5",
        .panel = 0,
        .title = "Channel shaken sideways, 3D smooth, e = 0.3, A = 10 d",
@@ -146,7 +143,29 @@ Reproduction run(const Request& request) {
            "Vertical temperature, drive along x, e = 0.3, smooth, with 95 % intervals; without gravity the "
            "abscissa is the same V_p. The paper: constant without gravity; with gravity a rise, a decay to a "
            "constant, and a second, smaller peak. Form of Bhateja et al. 2016, Fig. 5."},
-      series)};
+      series);
+}
+
+Reproduction run(const Request& request) {
+  const Size& size = size_for(request);
+  Gas gas(request);
+  for (const bool gravity : {false, true}) gas.add(runs_of(size, gravity));
+  Reproduction r;
+  r.title = "Bhateja et al. 2016, Fig. 5: vertical temperature in a channel shaken sideways";
+  r.complete = gas.run();
+  const Curve without = curve_of(gas.points(0)), with = curve_of(gas.points(1));
+  // Constant without gravity; with gravity a maximum, and a second one when beads reach the lid.
+  r.targets = {peak_target(with), second_peak_target(with), constant_target(without)};
+  r.table = "  the key is omega; W = 100 omega^2\n" + gas.table();
+  r.measured = gas.as_json();
+  r.conditions = gas.conditions();
+  r.runs = gas.runs_text();
+  r.cheaper = gas.cheaper();
+  if (size.depth < 35)
+    r.cheaper.push_back(fmt::format("period of {:g} d along y, {} beads, where the paper has 3000 (35 d)",
+                                    size.depth, std::lround(kBeadsPerDepth * size.depth)));
+  r.cheaper.push_back(fmt::format("{} frequencies", size.rpm.size()));
+  r.figures = {figure_of(without, with)};
   return r;
 }
 

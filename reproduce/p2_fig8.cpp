@@ -40,9 +40,9 @@ Fitted fit_of(int dimension, bool algebraic, const std::vector<GasPoint>& points
   for (const GasPoint& p : points)
     if (const auto t = p.get("T_bar_z"); t && p.at >= peak->grid && !p.solid())
       f.points.push_back({.x = p.at, .y = t->value});
-  constexpr std::size_t kFewest = 5;  // three parameters and two degrees of freedom
+  constexpr std::size_t kMinPoints = 5;  // three parameters and two degrees of freedom
   // Unweighted, as in plotting programs; the paper does not state its weights.
-  if (f.points.size() >= kFewest)
+  if (f.points.size() >= kMinPoints)
     f.fit = calibration::fit_curve(calibration::law_named(algebraic ? "algebraic" : "exponential"), f.points);
   return f;
 }

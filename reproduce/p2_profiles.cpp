@@ -127,12 +127,12 @@ std::optional<Profile> profile_of(const GasPoint& p, const Reading& reading, dou
   if (z == p.arrays.end() || t == p.arrays.end() || phi == p.arrays.end()) return std::nullopt;
   Profile profile{z->second, t->second, phi->second, {}};
   // Count the beads of a slab once per cycle. A slab that only a few beads crossed gets no temperature.
-  constexpr double kFewest = 100;
+  constexpr double kMinBeadCounts = 100;
   const double bead = flat ? std::numbers::pi / 4 : std::numbers::pi / 6;
   for (std::size_t k = 0; k < profile.phi.size(); ++k) {
     const double seen = profile.phi[k] * floor_area / bead * static_cast<double>(p.cycles);
     profile.error.push_back(std::sqrt(2 / std::max(1.0, seen)));
-    if (seen < kFewest) profile.t[k] = std::nan("");
+    if (seen < kMinBeadCounts) profile.t[k] = std::nan("");
   }
   return profile;
 }

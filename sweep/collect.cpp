@@ -317,19 +317,19 @@ std::vector<std::string> grid_row(const Curve& curve, const std::vector<std::str
 
 /// Table of a grid for a terminal: phase and the first numbers at each set of axes.
 std::string grid_table(const Schedule& schedule) {
-  constexpr std::size_t kMostRows = 24, kMostNumbers = 2;
+  constexpr std::size_t kMaxRows = 24, kMaxNumbers = 2;
   const Plan& plan = schedule.plan();
   if (plan.search || plan.axes.empty()) return {};
   std::vector<std::string> numbers = {"s_b", "s_c"};
   if (!plan.results.empty()) numbers.assign(plan.results.begin(), plan.results.end());
   std::erase(numbers, "phase");
-  numbers.resize(std::min(numbers.size(), kMostNumbers));
+  numbers.resize(std::min(numbers.size(), kMaxNumbers));
   std::vector<std::vector<std::string>> table(1);
   for (const Axis& axis : plan.axes) table[0].push_back(axis.key);
   table[0].insert(table[0].end(), {"runs", "phase"});
   table[0].insert(table[0].end(), numbers.begin(), numbers.end());
   for (const Curve& curve : schedule.curves())
-    if (table.size() <= kMostRows) table.push_back(grid_row(curve, numbers));
+    if (table.size() <= kMaxRows) table.push_back(grid_row(curve, numbers));
   // Columns that tell nothing: one run everywhere, or no phase because the plan does not want it.
   const auto everywhere = [&](std::size_t column, const char* cell) {
     return std::all_of(table.begin() + 1, table.end(), [&](const auto& row) { return row[column] == cell; });
@@ -350,8 +350,8 @@ std::string grid_table(const Schedule& schedule) {
     }
     text += line + "\n";
   }
-  if (const std::size_t all = schedule.curves().size(); all > kMostRows)
-    text += fmt::format("{} more rows: sweep collect writes all results to a table\n", all - kMostRows);
+  if (const std::size_t all = schedule.curves().size(); all > kMaxRows)
+    text += fmt::format("{} more rows: sweep collect writes all results to a table\n", all - kMaxRows);
   return text;
 }
 
@@ -364,7 +364,7 @@ std::string shortfall(const Curve& curve, const Search& search) {
 
 /// Why runs failed: one line for each of the three most frequent reasons, with the number of its runs.
 std::string failures_text(const Schedule& schedule) {
-  constexpr std::size_t kMostReasons = 3;
+  constexpr std::size_t kMaxReasons = 3;
   std::map<std::string, std::size_t> runs_of;
   for (const Curve& curve : schedule.curves())
     for (std::size_t i = 0; i < curve.points.size(); ++i) {
@@ -380,11 +380,11 @@ std::string failures_text(const Schedule& schedule) {
   std::stable_sort(reasons.begin(), reasons.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
   std::string text;
-  for (std::size_t k = 0; k < std::min(reasons.size(), kMostReasons); ++k)
+  for (std::size_t k = 0; k < std::min(reasons.size(), kMaxReasons); ++k)
     text += fmt::format("failed ({}): {}\n", reasons[k].second, reasons[k].first);
-  if (reasons.size() > kMostReasons)
+  if (reasons.size() > kMaxReasons)
     text +=
-        fmt::format("failed: {} other reasons, which sweep collect writes\n", reasons.size() - kMostReasons);
+        fmt::format("failed: {} other reasons, which sweep collect writes\n", reasons.size() - kMaxReasons);
   return text;
 }
 

@@ -29,7 +29,7 @@ std::string collected_csv(const Schedule& schedule);
 /// The kind of file that holds such a text, whatever the axes and results of its plan.
 Product collected_csv_file();
 
-/// Names of the results that are no single numbers, such as spectra and tensors, and that collected_csv()
+/// Names of the results that are not single numbers, such as spectra and tensors, and that collected_csv()
 /// therefore leaves out, in alphabetical order.
 /// \param collected the parsed text of collected_json()
 std::vector<std::string> results_outside_csv(const nlohmann::json& collected);

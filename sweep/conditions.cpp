@@ -4,15 +4,13 @@
 #include <optional>
 #include <string>
 
+#include "core/json_text.hpp"
+
 namespace twincell::sweep {
 
 namespace {
 
 using nlohmann::json;
-
-json number_or_null(const std::optional<double>& value) {
-  return value ? json(*value) : json(nullptr);
-}
 
 std::optional<double> optional_number(const JsonView& value) {
   return value.value().is_null() ? std::nullopt : std::optional(value.number());

@@ -16,7 +16,7 @@ namespace {
 // 100 %.
 constexpr int kWidths = 12;   // trial values of w
 constexpr double kFiner = 8;  // steps of mu per wanted width
-constexpr std::size_t kMostSteps = 4000;
+constexpr std::size_t kMaxSteps = 4000;
 
 /// ln(1/(1 + e^-t)).
 double log_logistic(double t) {
@@ -60,7 +60,7 @@ Onset estimate_onset(const std::vector<Trial>& trials, double low, double high, 
   const double range = high - low;
   const std::vector<Heap> heaps = heaps_of(trials);
   const auto steps =
-      std::clamp<std::size_t>(static_cast<std::size_t>(std::ceil(range * kFiner / width)), 16, kMostSteps);
+      std::clamp<std::size_t>(static_cast<std::size_t>(std::ceil(range * kFiner / width)), 16, kMaxSteps);
   const std::size_t outside = steps / 2, all = steps + 2 * outside;
   const double h = range / static_cast<double>(steps);
   const auto mu_at = [&](std::size_t k) {

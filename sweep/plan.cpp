@@ -28,14 +28,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::int64_t kMostRuns = 100'000;
-constexpr std::size_t kMostPoints = 1'000'000;
-
-std::string sha256_text(const std::string& text) {
-  Sha256 sum;
-  sum.add(text.data(), text.size());
-  return sum.hex();
-}
+constexpr std::int64_t kMaxRuns = 100'000;
+constexpr std::size_t kMaxPoints = 1'000'000;
 
 /// A TOML literal without its quotes, if it has any.
 std::string unquoted(const std::string& literal) {
@@ -91,7 +85,7 @@ Search read_search(const ConfigSection& s) {
     throw ConfigError(s.where("width"),
                       fmt::format("{:g} is less than a thousandth of the range, {:g}.", *width, all / 1000));
   search.width = *width;
-  search.runs = static_cast<int>(s.integer_in("runs", 2, kMostRuns).value_or(search.runs));
+  search.runs = static_cast<int>(s.integer_in("runs", 2, kMaxRuns).value_or(search.runs));
   search.batch = static_cast<int>(s.integer_in("batch", 1, 1000).value_or(search.batch));
   return search;
 }
@@ -150,7 +144,7 @@ void read_axes(Plan& plan, const ConfigSection& root) {
   for (const TomlLeaf& leaf : toml_leaves(plan.text, "axes")) {
     know(table, leaf.path);
     if (leaf.path == "seeds") {
-      plan.seeds = static_cast<int>(table.integer_in("seeds", 1, kMostRuns).value_or(1));
+      plan.seeds = static_cast<int>(table.integer_in("seeds", 1, kMaxRuns).value_or(1));
       if (plan.search)
         throw ConfigError(table.where("seeds"),
                           "a search chooses its number of seeds itself; search.runs limits it.");
@@ -164,9 +158,8 @@ void read_axes(Plan& plan, const ConfigSection& root) {
   std::size_t points = static_cast<std::size_t>(plan.seeds);
   for (const Axis& axis : plan.axes) {
     points *= axis.values.size();
-    if (points > kMostPoints)
-      throw ConfigError(table.where(axis.key),
-                        fmt::format("the axes make more than {} points.", kMostPoints));
+    if (points > kMaxPoints)
+      throw ConfigError(table.where(axis.key), fmt::format("the axes make more than {} points.", kMaxPoints));
   }
 }
 
@@ -258,7 +251,7 @@ Point make_point(const Plan& plan, const std::vector<std::string>& values, std::
   point.seed = scene.seed;
   if (!seeded) {
     // 53 bits, which TOML and JSON numbers represent exactly.
-    const std::string drawn = sha256_text(fmt::format("{}\n{}\n{}", plan.seed, replica, scene.resolved));
+    const std::string drawn = sha256_of_text(fmt::format("{}\n{}\n{}", plan.seed, replica, scene.resolved));
     point.seed = std::stoull(drawn.substr(0, 14), nullptr, 16) >> 3U;
     assignments.push_back(fmt::format("start.seed={}", point.seed));
     scene = scene_of(plan, assignments);
@@ -271,7 +264,7 @@ Point make_point(const Plan& plan, const std::vector<std::string>& values, std::
   if (plan.verdict)
     content += fmt::format("\n# verdict {} {}{}", plan.verdict->result, plan.verdict->above,
                            plan.stop_early ? ", stop early" : "");
-  point.id = sha256_text(content).substr(0, 16);
+  point.id = sha256_of_text(content).substr(0, 16);
   const sim::Plan cost = sim::make_plan(scene);
   point.work = static_cast<double>(cost.steps) *
                static_cast<double>(std::max<std::size_t>(1, scene.n_beads.value_or(1)));

@@ -15,12 +15,12 @@ namespace twincell::sweep {
 namespace {
 
 constexpr double kBetweenLooks = 1.2;  // ratio of run lengths at consecutive checks
-constexpr double kFewestCycles = 100, kFewestFlights = 40;
+constexpr double kMinCycles = 100, kMinFlights = 40;
 
 std::int64_t first_look(const sim::Scene& scene) {
   // A flight of 2 V_p/g takes Gamma/pi periods.
   const double periods = scene.g() > 0 && !scene.lid ? scene.drive.gamma() / std::numbers::pi : 0;
-  return static_cast<std::int64_t>(std::ceil(std::max(kFewestCycles, kFewestFlights * periods)));
+  return static_cast<std::int64_t>(std::ceil(std::max(kMinCycles, kMinFlights * periods)));
 }
 
 }  // namespace

@@ -287,8 +287,8 @@ std::string onset_label(const json& onset) {
 }  // namespace
 
 analysis::Figure results_figure(const std::string& collected, const FigureOptions& options) {
-  constexpr std::size_t kMostAxes = 2;
-  if (options.over.size() > kMostAxes)
+  constexpr std::size_t kMaxAxes = 2;
+  if (options.over.size() > kMaxAxes)
     throw ConfigError({.file = {}, .key = "--over"},
                       fmt::format("names {} axes; at most two can be drawn.", options.over.size()));
   const json document = json::parse(collected);
@@ -303,7 +303,7 @@ analysis::Figure results_figure(const std::string& collected, const FigureOption
   const auto key_label = [](const std::string& label, const std::string& key) {
     return with_unit(analysis::gnuplot_text(label), analysis::gnuplot_text(unit_of_key(key)));
   };
-  analysis::figure_style::Axis x_axis{.label = key_label(x, x)},
+  analysis::figure_style::PlotAxis x_axis{.label = key_label(x, x)},
       y_axis{.label = onsets ? key_label(y, document["onsets"][0].value("key", ""))
                              : with_unit(analysis::gnuplot_symbol(y),
                                          analysis::gnuplot_formula(unit_of_result(document, result)))};

@@ -159,10 +159,6 @@ void Schedule::done(const Task& task, const std::string& result) {
   file(task.curve, task.number, result);
 }
 
-void Schedule::give_up(const Task& task) {
-  here_[task.curve][task.number] = 0;
-}
-
 std::string Schedule::repeats_text() const {
   if (repeats_ == 0) return "";
   return fmt::format(

@@ -61,8 +61,6 @@ class Schedule {
   std::optional<Task> take(double most = 1e300);
   /// Enters the result of a task. \throws ConfigError
   void done(const Task& task, const std::string& result);
-  /// Returns a task without a result.
-  void give_up(const Task& task);
   /// Whether every point is done.
   [[nodiscard]] bool all() const;
   [[nodiscard]] Counts counts() const;

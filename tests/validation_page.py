@@ -11,8 +11,8 @@ HEAD = """# Validation results
 
 `./run validation` generates this page: it runs the verification tests and records the numbers that they print. Each row compares one number from
 outside the code (closed form, paper, other program) with the number that the program gives. A row without an outside number of its own measures an
-error, and its outside number is 0. Tolerances are absolute and two-sided. Where the outside gives bounds only, the row states them and has no error. For averages over many beads the tolerance is at least twice the standard
-error.
+error, and its outside number is 0. Tolerances are absolute and two-sided. If the reference is a bound, the row states the bound and has no error. For
+averages over many beads the tolerance is at least twice the standard error.
 
 | id | law or case | outside number | source | measured | error | tolerance | test |
 |---|---|---|---|---|---|---|---|

@@ -5,7 +5,8 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 words=(
   'reckon:compute' 'dearer:more expensive' 'huddle:cluster' 'whoever:(name the subject)' 'encounter:collision'
-  'spool:store' 'barycentre:centre of mass' 'catch_up:advance' 'rouse:activate'
+  'spool:store' 'barycentre:centre of mass' 'catch_up:advance' 'rouse:activate' 'held against:checked against'
+  'is no whole number:is not a whole number' 'is no error:is not an error' 'otherwise called:called by other names'
 )
 found=0
 for entry in "${words[@]}"; do

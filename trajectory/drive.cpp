@@ -139,9 +139,9 @@ double Drive::time_at(double cycles) const {
 }
 
 std::int64_t Drive::cycle_at(double time, double fraction) const {
-  constexpr double kLargest = 1e15;  // beyond which a double has no fraction
+  constexpr double kMaxWholeCycles = 1e15;  // beyond which a double has no fraction
   const double cycles = cycles_at(time) - fraction;
-  return (recorded || ramp) && std::abs(cycles) < kLargest ? std::llround(cycles) : 0;
+  return (recorded || ramp) && std::abs(cycles) < kMaxWholeCycles ? std::llround(cycles) : 0;
 }
 
 double Drive::displacement_bound() const {
@@ -278,9 +278,8 @@ std::vector<Harmonic> read_harmonics(const ConfigSection& drive) {
   const auto pairs = drive.pairs("harmonics");
   if (!pairs) return harmonics;
   const Where where = drive.where("harmonics");
-  if (pairs->size() > kMostHarmonics)
-    throw ConfigError(where,
-                      fmt::format("has {} harmonics, the bound is {}.", pairs->size(), kMostHarmonics));
+  if (pairs->size() > kMaxHarmonics)
+    throw ConfigError(where, fmt::format("has {} harmonics, the bound is {}.", pairs->size(), kMaxHarmonics));
   for (const auto& [amplitude, phase] : *pairs) {
     const std::size_t order = harmonics.size() + 2;
     if (!(amplitude >= 0 && amplitude <= kLargestHarmonic))

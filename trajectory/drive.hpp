@@ -26,7 +26,7 @@ struct Harmonic {
 };
 
 /// Largest number of harmonics above the first, and largest relative amplitude of one.
-inline constexpr std::size_t kMostHarmonics = 30;
+inline constexpr std::size_t kMaxHarmonics = 30;
 inline constexpr double kLargestHarmonic = 100;
 
 /// Motion of the plate along x beside that along z: x(t) = X sin(n omega t + 2 pi phi).
@@ -144,7 +144,7 @@ bool is_whole(const DriveSpec& spec);
 /// The harmonics as the value of the key `harmonics`: "[[0.1, 0.25], [0.02, 0]]", to the last bit.
 std::string harmonics_text(const std::vector<Harmonic>& harmonics);
 /// Reads `harmonics` of the `[drive]` table of a scene or a cell. \throws ConfigError for more than
-/// kMostHarmonics, and for an amplitude or a phase out of range
+/// kMaxHarmonics, and for an amplitude or a phase out of range
 std::vector<Harmonic> read_harmonics(const ConfigSection& drive);
 
 /// Reads the six keys of a DriveSpec from the `[drive]` table of a scene or a cell.

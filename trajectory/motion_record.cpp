@@ -13,7 +13,7 @@
 #include <system_error>
 #include <utility>
 
-#include "core/counted.hpp"
+#include "core/plural.hpp"
 #include "core/sha256.hpp"
 #include "core/table.hpp"
 
@@ -22,8 +22,8 @@ namespace twincell {
 namespace {
 
 constexpr std::uintmax_t kLargestFile = std::uintmax_t{256} << 20;
-constexpr std::size_t kFewestRows = 8;
-constexpr double kFewestPerCycle = 8, kFewestCycles = 2;
+constexpr std::size_t kMinRows = 8;
+constexpr double kMinPerCycle = 8, kMinCycles = 2;
 /// Largest departure of a time from equal steps, in steps. Loggers round times to a few digits.
 constexpr double kJitter = 0.1;
 
@@ -147,12 +147,13 @@ std::vector<double> spline_slopes(const std::vector<double>& y) {
 /// The same of values that repeat, which are continued on both sides: the slope at a value depends on the
 /// k-th value beside it as 0.27^k.
 std::vector<double> periodic_slopes(const std::vector<double>& y) {
-  constexpr std::size_t kBeside = 40;
+  constexpr std::size_t kSamplesBeside = 40;
   const std::size_t n = y.size();
-  std::vector<double> longer(n + 2 * kBeside);
-  for (std::size_t i = 0; i < longer.size(); ++i) longer[i] = y[(i + n * kBeside - kBeside) % n];
+  std::vector<double> longer(n + 2 * kSamplesBeside);
+  for (std::size_t i = 0; i < longer.size(); ++i)
+    longer[i] = y[(i + n * kSamplesBeside - kSamplesBeside) % n];
   const std::vector<double> slopes = spline_slopes(longer);
-  return {slopes.begin() + kBeside, slopes.end() - kBeside};
+  return {slopes.begin() + kSamplesBeside, slopes.end() - kSamplesBeside};
 }
 
 /// Samples of the motion that starts at height 0 (and, of accelerations, at rest), with the values as they
@@ -199,27 +200,27 @@ struct Component {
 Component remove_trend(std::vector<MotionSample>& samples, int degree, double h, double omega) {
   const auto n = static_cast<double>(samples.size());
   const double half = (n - 1) * h / 2;
-  constexpr int kMost = 5;
+  constexpr int kMaxTerms = 5;  // cosine, sine and a parabola
   const auto terms = [&](double i) {
     const double t = i * h, s = t / half - 1;
-    Eigen::Matrix<double, kMost, 1> row = Eigen::Matrix<double, kMost, 1>::Zero();
+    Eigen::Matrix<double, kMaxTerms, 1> row = Eigen::Matrix<double, kMaxTerms, 1>::Zero();
     row[0] = std::cos(omega * t), row[1] = std::sin(omega * t);
     for (int k = 0; k <= degree; ++k) row[2 + k] = std::pow(s, k);
     return row;
   };
-  Eigen::Matrix<double, kMost, kMost> normal = Eigen::Matrix<double, kMost, kMost>::Zero();
+  Eigen::Matrix<double, kMaxTerms, kMaxTerms> normal = Eigen::Matrix<double, kMaxTerms, kMaxTerms>::Zero();
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto row = terms(static_cast<double>(i));
     normal += row * row.transpose();
   }
-  for (int k = 3 + degree; k < kMost; ++k) normal(k, k) = 1;
-  const Eigen::LDLT<Eigen::Matrix<double, kMost, kMost>> solver(normal);
+  for (int k = 3 + degree; k < kMaxTerms; ++k) normal(k, k) = 1;
+  const Eigen::LDLT<Eigen::Matrix<double, kMaxTerms, kMaxTerms>> solver(normal);
   Component sine;
   // The second round removes what rounding left of a large trend in the first.
   for (int round = 0; round < 2; ++round) {
-    Eigen::Matrix<double, kMost, 1> right = Eigen::Matrix<double, kMost, 1>::Zero();
+    Eigen::Matrix<double, kMaxTerms, 1> right = Eigen::Matrix<double, kMaxTerms, 1>::Zero();
     for (std::size_t i = 0; i < samples.size(); ++i) right += samples[i].z * terms(static_cast<double>(i));
-    const Eigen::Matrix<double, kMost, 1> p = solver.solve(right);
+    const Eigen::Matrix<double, kMaxTerms, 1> p = solver.solve(right);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const double s = static_cast<double>(i) * h / half - 1;
       samples[i].z -= p[2] + s * (p[3] + s * p[4]);
@@ -297,10 +298,10 @@ MotionRecord read_motion_record(const std::filesystem::path& path, const Scale& 
     throw InputError({.file = path.string(), .key = {}},
                      fmt::format("is {} MB large, the bound is {} MB.", size >> 20, kLargestFile >> 20));
   const Table table = read_table(path);
-  if (table.n_rows() < kFewestRows || table.n_rows() > kMostSamples)
+  if (table.n_rows() < kMinRows || table.n_rows() > kMaxSamples)
     throw InputError({.file = table.file, .key = {}},
                      fmt::format("has {}; a recorded motion has at least {} and at most {}.",
-                                 counted(table.n_rows(), "row"), kFewestRows, kMostSamples));
+                                 plural(table.n_rows(), "row"), kMinRows, kMaxSamples));
   const Found time = find(table, kTimes, "times", scale, where);
   Found motion = find(table, kMotions, "the motion", scale, where);
   return {.file = table.file,
@@ -336,12 +337,12 @@ FittedMotion fit_motion(const MotionRecord& record, double omega, int cycles) {
     throw InputError({.file = record.file, .key = {}}, complaint);
   };
   if (const double lasts = static_cast<double>(record.values.size() - 1) * h / period;
-      cycles == 0 && !(lasts >= kFewestCycles))
+      cycles == 0 && !(lasts >= kMinCycles))
     refuse(fmt::format("lasts {:.3g} cycles of the drive; at least {:g} are needed, or drive.repeat = true.",
-                       lasts, kFewestCycles));
-  if (!(period / h >= kFewestPerCycle))
+                       lasts, kMinCycles));
+  if (!(period / h >= kMinPerCycle))
     refuse(fmt::format("has {:.3g} samples in a cycle of the drive; at least {:g} are needed.", period / h,
-                       kFewestPerCycle));
+                       kMinPerCycle));
   if (cycles > 0) require_closed(record);
 
   std::vector<double> y = record.values;

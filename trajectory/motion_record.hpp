@@ -27,7 +27,7 @@ struct MotionRecord {
 /// axis of the drive (`position_mm`, `position_m`, `position_sigma`, `velocity_mm_s`, `velocity_m_s`,
 /// `velocity_v0`, `acceleration_m_s2` or `acceleration_g`, in units of sigma/t0^2); other columns are
 /// ignored. \param scale converts laboratory units \throws InputError naming file, column and row: as
-/// read_table; a column that is missing or stands twice; fewer than 8 or more than kMostSamples rows; a file
+/// read_table; a column that is missing or stands twice; fewer than 8 or more than kMaxSamples rows; a file
 /// above 256 MB; a row without a number; times that do not ascend, of which rows are missing, or that depart
 /// from equal steps by more than a tenth of a step. ConfigError at `where` if `scale` lacks a number that a
 /// unit requires

@@ -18,7 +18,7 @@ void require_ranges(const TrajectoryInfo& info, const std::string& name) {
     throw InputError({name, 0, 0, key}, complaint);
   };
   constexpr double kLargestRadius = 1e5;  // sigma
-  constexpr int kMostPhases = 1'000'000;
+  constexpr int kMaxPhases = 1'000'000;
   if (info.box.dimension != 2 && info.box.dimension != 3)
     refuse("twincell/cell@dimension", fmt::format("is {}; it must be 2 or 3.", info.box.dimension));
   for (int a = 0; a < 3; ++a) {
@@ -37,9 +37,9 @@ void require_ranges(const TrajectoryInfo& info, const std::string& name) {
   };
   each(info.radius, "radius", kLargestRadius);
   each(info.mass, "mass", 1e300);
-  if (info.phases_per_cycle < 0 || info.phases_per_cycle > kMostPhases)
+  if (info.phases_per_cycle < 0 || info.phases_per_cycle > kMaxPhases)
     refuse("parameters/phases_per_cycle",
-           fmt::format("is {}; it must be between 0 and {}.", info.phases_per_cycle, kMostPhases));
+           fmt::format("is {}; it must be between 0 and {}.", info.phases_per_cycle, kMaxPhases));
   if (info.drive) {
     if (!(info.drive->amplitude >= 0 && info.drive->amplitude <= kFarthestPosition))
       refuse("parameters/drive/amplitude", fmt::format("is {:g}; it must be between 0 and {:g}.",
@@ -47,9 +47,9 @@ void require_ranges(const TrajectoryInfo& info, const std::string& name) {
     if (!(info.drive->omega >= 0 && info.drive->omega <= 1e9))
       refuse("parameters/drive/omega",
              fmt::format("is {:g}; it must be between 0 and 1e9.", info.drive->omega));
-    if (info.drive->harmonics.size() > kMostHarmonics)
+    if (info.drive->harmonics.size() > kMaxHarmonics)
       refuse("parameters/drive/harmonics",
-             fmt::format("has {} harmonics, the bound is {}.", info.drive->harmonics.size(), kMostHarmonics));
+             fmt::format("has {} harmonics, the bound is {}.", info.drive->harmonics.size(), kMaxHarmonics));
     for (const Harmonic& h : info.drive->harmonics)
       if (!(h.amplitude >= 0 && h.amplitude <= kLargestHarmonic && h.phase >= 0 && h.phase < 1))
         refuse("parameters/drive/harmonics",
@@ -89,7 +89,7 @@ void require_order(std::span<const std::int32_t> phases, std::span<const std::in
 
 void require_ranges(const Frame& frame, std::size_t index, const TrajectoryInfo& info,
                     const std::string& name) {
-  constexpr std::int64_t kMostCycles = 1'000'000'000'000;
+  constexpr std::int64_t kMaxCycles = 1'000'000'000'000;
   const auto refuse = [&](const std::string& complaint) {
     throw InputError({name, 0, 0, fmt::format("frame {}", index)}, complaint);
   };
@@ -114,8 +114,8 @@ void require_ranges(const Frame& frame, std::size_t index, const TrajectoryInfo&
   if (frame.phase < -1 || frame.phase >= std::max(info.phases_per_cycle, 1))
     refuse(fmt::format("its phase is {}; it must be below {} phases per cycle.", frame.phase,
                        info.phases_per_cycle));
-  if (frame.cycle < -kMostCycles || frame.cycle > kMostCycles)
-    refuse(fmt::format("its cycle is {}; it must be within {}.", frame.cycle, kMostCycles));
+  if (frame.cycle < -kMaxCycles || frame.cycle > kMaxCycles)
+    refuse(fmt::format("its cycle is {}; it must be within {}.", frame.cycle, kMaxCycles));
 }
 
 }  // namespace twincell

@@ -16,13 +16,13 @@ struct Runs {
 };
 
 Runs runs_at(double extreme, const std::vector<double>& values, double resolution) {
-  constexpr std::size_t kShortest = 3;
+  constexpr std::size_t kMinClippedSamples = 3;
   Runs found;
   for (std::size_t begin = 0; begin < values.size();) {
     std::size_t end = begin;
     while (end < values.size() && values[end] == extreme) ++end;
     const std::size_t length = end - begin;
-    if (length >= kShortest) {
+    if (length >= kMinClippedSamples) {
       // Of a parabola whose `length` middle values are within the resolution, the value two further out is
       // within this, and half of the resolution is for its rounding. The value next to a run may lie just
       // below the bound of the instrument. A run at an end of the record has one side.
@@ -40,7 +40,7 @@ Runs runs_at(double extreme, const std::vector<double>& values, double resolutio
 }  // namespace
 
 std::string doubt_of_clipping(const std::vector<double>& values) {
-  constexpr std::size_t kFewestRuns = 2;
+  constexpr std::size_t kMinRuns = 2;
   if (values.empty()) return {};
   std::vector<double> sorted = values;
   std::ranges::sort(sorted);
@@ -50,7 +50,7 @@ std::string doubt_of_clipping(const std::vector<double>& values) {
     if (const double step = sorted[i] - sorted[i - 1]; step > 0) resolution = std::min(resolution, step);
   if (!(resolution > 0)) return {};
   const Runs at_low = runs_at(low, values, resolution), at_high = runs_at(high, values, resolution);
-  if (at_low.runs + at_high.runs < kFewestRuns) return {};
+  if (at_low.runs + at_high.runs < kMinRuns) return {};
   return fmt::format(
       "{:.2g} % of the values are exactly the largest or the smallest, in {} flat parts with sharp ends: was "
       "the range of the instrument exceeded?",

@@ -16,7 +16,7 @@ struct MotionSample {
 };
 
 /// Largest number of samples of a record, and largest displacement, sigma.
-inline constexpr std::size_t kMostSamples = 1'000'000;
+inline constexpr std::size_t kMaxSamples = 1'000'000;
 inline constexpr double kLargestStroke = 1e6;
 
 /// What a record says besides its samples.

@@ -11,12 +11,12 @@
 namespace twincell {
 
 double median_spacing(std::span<const Vec3> centres) {
-  constexpr std::size_t kMost = 100;
+  constexpr std::size_t kSampledCentres = 100;
   std::vector<Vec3> all;
   std::ranges::copy_if(centres, std::back_inserter(all), [](const Vec3& r) { return r.allFinite(); });
   if (all.size() < 2) return std::nan("");
   std::vector<double> nearest;
-  const std::size_t stride = std::max<std::size_t>(1, all.size() / kMost);
+  const std::size_t stride = std::max<std::size_t>(1, all.size() / kSampledCentres);
   for (std::size_t i = 0; i < all.size(); i += stride) {
     double closest = HUGE_VAL;
     for (std::size_t j = 0; j < all.size(); ++j)
@@ -28,7 +28,7 @@ double median_spacing(std::span<const Vec3> centres) {
 
 std::size_t listed_again(std::span<const Vec3> centres, double distance) {
   // Beads sorted by the cell of a grid as wide as the distance: a neighbour lies in an adjacent cell.
-  constexpr double kFarthest = 1e15;  // cells; further out, neighbours cannot be distinguished
+  constexpr double kMaxCell = 1e15;  // cells; further out, neighbours cannot be distinguished
   struct InCell {
     std::array<std::int64_t, 3> cell;
     std::size_t bead;
@@ -37,7 +37,7 @@ std::size_t listed_again(std::span<const Vec3> centres, double distance) {
   sorted.reserve(centres.size());
   for (std::size_t i = 0; i < centres.size(); ++i) {
     const Vec3 r = centres[i] / distance;
-    if (!r.allFinite() || r.cwiseAbs().maxCoeff() > kFarthest) continue;
+    if (!r.allFinite() || r.cwiseAbs().maxCoeff() > kMaxCell) continue;
     const auto cell = [](double v) { return static_cast<std::int64_t>(std::floor(v)); };
     sorted.push_back({{cell(r.x()), cell(r.y()), cell(r.z())}, i});
   }

@@ -8,8 +8,8 @@
 
 #include "core/escape.hpp"
 #include "core/placeholder.hpp"
-#include "imaging/cell/implausible.hpp"
 #include "imaging/refine/refiner.hpp"
+#include "trajectory/unit_checks.hpp"
 
 namespace twincell::twin {
 namespace {
@@ -77,10 +77,11 @@ class Draft {
   /// Touching beads are one diameter apart. Discs of another width have rims that glare, overexposure or a
   /// grey level of their own moves.
   void scale_of_plain_discs(const calibration::Estimate& width) {
-    constexpr double kErrors = 5, kShare = 1e-3;
+    constexpr double kMinErrors = 5, kMinDifference = 1e-3;
     if (s_.diameter_stated || !spacing_is_clear()) return;
     const calibration::Estimate& apart = *s_.beads->spacing;
-    const double least = std::max(kErrors * std::hypot(width.error, apart.error), kShare * apart.value);
+    const double least =
+        std::max(kMinErrors * std::hypot(width.error, apart.error), kMinDifference * apart.value);
     if (std::abs(width.value - apart.value) <= least) return;
     scale_by_spacing(width);
     out_.notes.push_back(fmt::format(
@@ -99,11 +100,11 @@ class Draft {
     if (width && a_.width_mm && a_.sigma_mm) {
       scale_ = with_errors(width->value * *a_.sigma_mm / *a_.width_mm, {relative(*width)});
       how_scale_ = "distance of the walls in px over cell.width";
-      constexpr double kErrors = 5, kShare = 0.01;
+      constexpr double kMinErrors = 5, kMinDifference = 0.01;
       if (diameter)
         if (const double apart = diameter->value - scale_->value;
             std::abs(apart) >
-            std::max(kErrors * std::hypot(diameter->error, scale_->error), kShare * scale_->value))
+            std::max(kMinErrors * std::hypot(diameter->error, scale_->error), kMinDifference * scale_->value))
           out_.notes.push_back(
               fmt::format("the walls give {} px per bead and the beads measure {} px: bead diameter ({:g} "
                           "mm) and width ({:g} mm) do not fit together",
@@ -219,9 +220,9 @@ class Draft {
           r{fit.value("tilt_right"), fit.standard_error("tilt_right")};
       // A camera that drifts, a coarse JPEG or text in the picture tilt a wall by less than this, which
       // shifts it by 0.02 sigma over ten beads.
-      constexpr double kLeastTilt = 0.1;  // degrees
+      constexpr double kMinTilt = 0.1;  // degrees
       const auto tilted = [&](const calibration::Estimate& e) {
-        return std::abs(e.value) > std::max(kSignificant * e.error, kLeastTilt);
+        return std::abs(e.value) > std::max(kSignificant * e.error, kMinTilt);
       };
       if (tilted(l) || tilted(r))
         out_.keys.push_back(
@@ -244,10 +245,10 @@ class Draft {
 
   /// A second harmonic that is clearly there. Its acceleration is four times its share of A.
   void harmonic() {
-    constexpr double kErrors = 5, kShare = 0.01;
+    constexpr double kMinErrors = 5, kMinDifference = 0.01;
     if (!s_.drive || !s_.drive->second_harmonic) return;
     const calibration::DriveFit& d = *s_.drive;
-    if (*d.second_harmonic < std::max(kShare, kErrors * *d.second_harmonic_error)) return;
+    if (*d.second_harmonic < std::max(kMinDifference, kMinErrors * *d.second_harmonic_error)) return;
     const calibration::Estimate share{*d.second_harmonic, *d.second_harmonic_error},
         phase{*d.second_harmonic_phase, share.error / (2 * std::numbers::pi * share.value)};
     out_.keys.push_back(
@@ -304,9 +305,9 @@ class Draft {
 
   /// Notes a stated Gamma that differs from that of amplitude and frequency.
   void contradiction() {
-    constexpr double kErrors = 5, kShare = 0.03;
+    constexpr double kMinErrors = 5, kMinDifference = 0.03;
     const double apart = *a_.gamma - out_.gamma->value;
-    if (std::abs(apart) > std::max(kErrors * out_.gamma->error, kShare * *a_.gamma))
+    if (std::abs(apart) > std::max(kMinErrors * out_.gamma->error, kMinDifference * *a_.gamma))
       out_.notes.push_back(
           fmt::format("Gamma = {:g} is stated, but the plate's amplitude and the frequency give {} +- {}",
                       *a_.gamma, value_text(*out_.gamma), error_text(out_.gamma->error)));
@@ -324,12 +325,12 @@ class Draft {
   }
 
   void doubts() {
-    imaging::ShakenCell numbers{.sigma_mm = a_.sigma_mm,
-                                .frequency_hz = a_.frequency_hz,
-                                .gamma = a_.gamma,
-                                .gravity_m_s2 = a_.gravity_m_s2};
+    ShakenCell numbers{.sigma_mm = a_.sigma_mm,
+                       .frequency_hz = a_.frequency_hz,
+                       .gamma = a_.gamma,
+                       .gravity_m_s2 = a_.gravity_m_s2};
     if (out_.gamma) numbers.gamma = out_.gamma->value;
-    for (const std::string& doubt : imaging::implausible_numbers(numbers)) out_.notes.push_back(doubt);
+    for (const std::string& doubt : implausible_numbers(numbers)) out_.notes.push_back(doubt);
     constexpr double kSame = 0.03;  // as in the check of a stated drive
     const std::optional<double> rate = a_.frame_rate_hz ? a_.frame_rate_hz : s_.frame_rate_hz;
     if (!rate || !a_.frequency_hz || !s_.drive) return;
@@ -349,9 +350,9 @@ class Draft {
 };
 
 int decimals(double error) {
-  constexpr int kMost = 9;
+  constexpr int kMaxDigits = 9;
   if (!(error > 0) || !std::isfinite(error)) return -1;
-  return std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, kMost);
+  return std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, kMaxDigits);
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include <iterator>
 #include <map>
 
-#include "core/counted.hpp"
 #include "core/error.hpp"
+#include "core/plural.hpp"
 #include "imaging/stack/open_frames.hpp"
 
 namespace twincell::twin {
@@ -121,7 +121,7 @@ StacksAndCells pair_stacks(const std::vector<fs::path>& arguments) {
     throw ConfigError({.file = {}, .key = "match"},
                       fmt::format("{} and {}{} are named; give one cell file for all stacks, or one "
                                   "for each, in their order.",
-                                  counted(n, "stack"), counted(p.cells.size(), "cell file"),
+                                  plural(n, "stack"), plural(p.cells.size(), "cell file"),
                                   folder.empty() ? "" : " and a folder of cell files"));
   const std::vector<std::string> names = names_of_stacks(p.stacks);
   for (std::size_t i = 0; i < n; ++i) {

@@ -176,20 +176,20 @@ void draw_motion(cv::Mat3b& picture, cv::Rect area, const CellSurvey& s) {
 }  // namespace
 
 cv::Mat3b draw_cell(const CellSurvey& s, const CellDraft& draft) {
-  constexpr int kWidest = 1200, kMost = 3, kPlot = 200;
-  const int enlarge = std::clamp(kWidest / std::max(1, s.size.width), 1, kMost);
+  constexpr int kMaxWidth_px = 1200, kMaxFactor = 3, kPlotHeight_px = 200;
+  const int enlarge = std::clamp(kMaxWidth_px / std::max(1, s.size.width), 1, kMaxFactor);
   cv::Mat3b frame = imaging::draw_overlay(s.picture, s.discs, enlarge);
   imaging::flatten_noise(frame);
   draw_edges(frame, enlarge, s, draft);
   const std::vector<Entry> list = entries(s, draft);
   const int text = kBorder + kLine * static_cast<int>(list.size());
-  const int needed = text + (s.drive ? 3 * kLine + kPlot : 0) + kBorder;
+  const int needed = text + (s.drive ? 3 * kLine + kPlotHeight_px : 0) + kBorder;
   cv::Mat3b page(std::max(frame.rows, needed), frame.cols + kPanel, cv::Vec3b(255, 255, 255));
   frame.copyTo(page(cv::Rect(0, 0, frame.cols, frame.rows)));
   const int x = frame.cols + kBorder;
   for (std::size_t i = 0; i < list.size(); ++i)
     imaging::draw_text(page, list[i].text, {x, kBorder + kLine * static_cast<int>(i) + 10}, list[i].colour);
-  if (s.drive) draw_motion(page, {x, text + 2 * kLine, kPanel - 2 * kBorder, kPlot}, s);
+  if (s.drive) draw_motion(page, {x, text + 2 * kLine, kPanel - 2 * kBorder, kPlotHeight_px}, s);
   return page;
 }
 

@@ -76,8 +76,8 @@ std::optional<imaging::LocatorOptions> survey_beads(CellSurvey& s, const SurveyO
     bar->update(1, 1);
   }
   // A single blob is no bed: an evenly lit cell looks like one large disc.
-  constexpr std::size_t kFewest = 3;
-  if (options.diameter_px <= 0 && s.discs.size() < kFewest) {
+  constexpr std::size_t kMinDiscs = 3;
+  if (options.diameter_px <= 0 && s.discs.size() < kMinDiscs) {
     s.discs.clear();
     s.missing.push_back({"the bead diameter", "no round beads stand out in the first frames", remedy});
     return std::nullopt;
@@ -108,7 +108,7 @@ bool beads_below_plate(const CellSurvey& s) {
   const auto& heights = s.geometry->heights;
   if (s.frame >= heights.size() || !std::isfinite(heights[s.frame].height_px)) return false;
   const double row = s.geometry->plate_row - heights[s.frame].height_px;
-  constexpr double kShare = 0.03;  // of the beads
+  constexpr double kMaxShareBelow = 0.03;  // of the beads
   const auto x_of = [&](bool seen, const char* wall, double otherwise) {
     return seen ? s.geometry->fit.value(wall) : otherwise;
   };
@@ -117,12 +117,12 @@ bool beads_below_plate(const CellSurvey& s) {
   const auto below = std::count_if(s.discs.begin(), s.discs.end(), [&](const imaging::Detection& d) {
     return d.x > left && d.x < right && d.y + d.radius > row + 2 * d.radius / 3;
   });
-  return below > 1 && static_cast<double>(below) > kShare * static_cast<double>(s.discs.size());
+  return below > 1 && static_cast<double>(below) > kMaxShareBelow * static_cast<double>(s.discs.size());
 }
 
 /// The fitted motion, if the lowest edge moves as a plate does.
 void survey_plate(CellSurvey& s, const SurveyOptions& options, const std::vector<std::uint8_t>& repeats) {
-  constexpr double kSeen = 0.9;
+  constexpr double kMinShareSeen = 0.9;
   const auto heights = s.geometry->heights_px();
   const auto seen = std::count_if(heights.begin(), heights.end(), [](double h) { return std::isfinite(h); });
   const auto unseen = [&](const std::string& why) {
@@ -137,7 +137,7 @@ void survey_plate(CellSurvey& s, const SurveyOptions& options, const std::vector
   };
   if (!s.geometry->has_plate || seen == 0)
     return unseen("no edge of a plate is seen at the bottom of the picture");
-  if (static_cast<double>(seen) < kSeen * static_cast<double>(heights.size()))
+  if (static_cast<double>(seen) < kMinShareSeen * static_cast<double>(heights.size()))
     return unseen(fmt::format("its edge is seen in only {} of {} frames", seen, heights.size()));
   if (beads_below_plate(s)) return unseen("beads are seen below the lowest edge, so this edge is no plate");
   s.plate_row = calibration::Estimate{s.geometry->plate_row, s.geometry->plate_row_error};
@@ -218,19 +218,19 @@ void add_wall(calibration::FitReport& fit, const std::string& side, const calibr
 /// Walls and plate that no edge shows, from the beads that touch them.
 void survey_bed(CellSurvey& s, const imaging::LocatorOptions& locator, const SurveyOptions& options,
                 const ProgressOf& progress) {
-  constexpr int kMostFrames = 2000;
-  const auto frames = imaging::chosen_frames(std::make_unique<ReadableFrames>(s.stack), {.end = kMostFrames});
+  constexpr int kMaxFrames = 2000;
+  const auto frames = imaging::chosen_frames(std::make_unique<ReadableFrames>(s.stack), {.end = kMaxFrames});
   const auto bar = progress("beads of all frames");
   const calibration::BeadFrames beads =
-      calibration::locate_beads(*frames, locator, std::nullopt, kMostFrames, options.threads, *bar);
+      calibration::locate_beads(*frames, locator, std::nullopt, kMaxFrames, options.threads, *bar);
   // A bed that the picture cuts may have its walls outside. Single beads that fly out of it do not matter.
-  constexpr double kFew = 0.01;
+  constexpr double kMaxShareCut = 0.01;
   double all = 0, cut = 0;
   for (std::size_t f = 0; f < beads.frames.size(); ++f) {
     all += static_cast<double>(beads.counts[f]);
     cut += static_cast<double>(beads.counts[f] - beads.frames[f].size());
   }
-  if (cut > kFew * all) {
+  if (cut > kMaxShareCut * all) {
     s.notes.push_back(
         "the border of the picture cuts beads, so walls and plate are not taken from the beads that touch "
         "them");

@@ -19,7 +19,7 @@
 
 namespace twincell::twin {
 
-/// NotMeasured::what where the period of the plate is no whole number of frames.
+/// NotMeasured::what where the period of the plate is not a whole number of frames.
 inline constexpr const char* kFramesPerCycle = "the number of frames per cycle";
 
 /// A quantity that the stack does not give.

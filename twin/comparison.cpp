@@ -10,8 +10,8 @@
 
 #include "analysis/runs/pooling.hpp"
 #include "core/atomic_file.hpp"
-#include "core/counted.hpp"
 #include "core/json_view.hpp"
+#include "core/plural.hpp"
 #include "imaging/camera/noise_matched_camera.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/stack/representative_frames.hpp"
@@ -25,8 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Limits of a report page: bead positions of all snapshots together, bytes of pictures, snapshots per run.
-constexpr std::size_t kMostPositions = 400000, kMostPictureBytes = 12000000, kMostSnapshots = 20,
-                      kFewestSnapshots = 4;
+constexpr std::size_t kMaxPositions = 400000, kMaxPictureBytes = 12000000, kMaxSnapshots = 20,
+                      kMinSnapshots = 4;
 
 /// The trajectories of both sides, experiments first.
 struct Sides {
@@ -43,8 +43,8 @@ Sides read_sides(const ComparingOptions& options) {
   if (!options.stacks.empty() && options.stacks.size() != options.experiments.size())
     throw ConfigError({.file = {}, .key = "--stack"},
                       fmt::format("{} given for {}; give one for each, in their order.",
-                                  counted(options.stacks.size(), "stack"),
-                                  counted(options.experiments.size(), "experiment")));
+                                  plural(options.stacks.size(), "stack"),
+                                  plural(options.experiments.size(), "experiment")));
   Sides sides;
   sides.n_experiments = options.experiments.size();
   for (const auto* files : {&options.experiments, &options.simulations})
@@ -86,7 +86,7 @@ void check_sides(const Sides& sides, std::vector<std::string>& notes) {
 std::size_t snapshots_of_each(const Sides& sides) {
   std::size_t slots = 0;
   for (const auto& trajectory : sides.trajectories) slots += trajectory->info().n_beads;
-  return std::clamp(kMostPositions / std::max<std::size_t>(1, slots), kFewestSnapshots, kMostSnapshots);
+  return std::clamp(kMaxPositions / std::max<std::size_t>(1, slots), kMinSnapshots, kMaxSnapshots);
 }
 
 /// Drops every other picture until the rest fits into `bytes`.
@@ -153,7 +153,7 @@ void show_frames(const TrajectoryInfo& info, const fs::path& stack, bool is_name
   if (stack.empty()) return;
   if (is_named) require_size(stack, *run.show.camera, run.name);
   std::vector<std::int64_t> numbers;
-  for (const analysis::Snapshot& moment : run.show.moments) numbers.push_back(moment.frame.step);
+  for (const analysis::Snapshot& snapshot : run.show.snapshots) numbers.push_back(snapshot.frame.step);
   try {
     const auto frames = imaging::open_frames(stack);
     constexpr int kLongest_px = 800;
@@ -249,7 +249,7 @@ analysis::Checks::Filmed film(const analysis::Run& experiment, analysis::Run& si
     frames = frames * static_cast<std::size_t>(simulation.phases_per_cycle) /
              static_cast<std::size_t>(experiment.phases_per_cycle);
   const Beginning seen(trajectory, std::max<std::size_t>(1, frames));
-  // Determine the temporary folder only here: without a film, a TMPDIR that does not exist is no error.
+  // Determine the temporary folder only here: without a film, a TMPDIR that does not exist is not an error.
   const Scratch scratch(options.scratch.empty() ? folder_for_temporaries() : options.scratch);
   const fs::path tracked = scratch.path / "filmed.h5";
   film_and_track(seen, camera, tracked, options.threads, simulation.show, progress);
@@ -272,7 +272,7 @@ std::vector<analysis::Run> analyse(const Sides& sides, const ComparingOptions& o
     const auto bar = progress(trajectory.name());
     analysis::Run run = analysis::analyze_run(trajectory, sides.side_of(i), options.analysis, *bar);
     for (const std::size_t f : analysis::representative_frames(trajectory, most))
-      run.show.moments.push_back(analysis::snapshot(trajectory, f, run.cutoff));
+      run.show.snapshots.push_back(analysis::snapshot(trajectory, f, run.cutoff));
     if (run.side == analysis::Side::experiment)
       show_frames(trajectory.info(), stack_behind(options, trajectory, i), !options.stacks.empty(), run,
                   notes);
@@ -354,16 +354,17 @@ void limit_pictures(std::vector<analysis::Run>& runs) {
   std::size_t with_pictures = 0;
   for (const analysis::Run& run : runs) with_pictures += run.show.pictures.empty() ? 0 : 1;
   for (analysis::Run& run : runs)
-    thin(run.show.pictures, kMostPictureBytes / std::max<std::size_t>(1, with_pictures));
+    thin(run.show.pictures, kMaxPictureBytes / std::max<std::size_t>(1, with_pictures));
 }
 
 }  // namespace
 
-analysis::Comparison compare_runs(const ComparingOptions& options, const ProgressOf& progress,
-                                  std::vector<std::string>& notes) {
+NotedComparison compare_runs(const ComparingOptions& options, const ProgressOf& progress) {
   const Sides sides = read_sides(options);
+  NotedComparison noted;
+  analysis::Comparison& c = noted.comparison;
+  std::vector<std::string>& notes = noted.notes;
   check_sides(sides, notes);
-  analysis::Comparison c;
   c.runs = analyse(sides, options, progress, notes, c.checks);
   refuse_repeated_runs(c.runs);
   c.matches = analysis::match_runs(c.runs, options.tolerance);
@@ -372,9 +373,9 @@ analysis::Comparison compare_runs(const ComparingOptions& options, const Progres
   if (options.film) c.checks.filmed = film_matches(sides, options, c.matches, progress, notes, c.runs);
   limit_pictures(c.runs);
   c.boundaries = analysis::find_boundaries(c.runs);
-  add_sweeps(options.sweeps, c, notes);
+  for (std::string& note : add_sweeps(options.sweeps, c)) notes.push_back(std::move(note));
   c.differences = analysis::find_differences(c.runs, c.matches, c.checks);
-  return c;
+  return noted;
 }
 
 }  // namespace twincell::twin

@@ -179,8 +179,9 @@ JsonView read_results(const fs::path& file) {
   return document;
 }
 
-void add_results(const JsonView& document, const fs::path& file, analysis::Comparison& comparison,
-                 std::vector<std::string>& notes) {
+std::vector<std::string> add_results(const JsonView& document, const fs::path& file,
+                                     analysis::Comparison& comparison) {
+  std::vector<std::string> notes;
   const std::size_t before = comparison.sweep.size() + comparison.boundaries.size();
   add_points(document, comparison);
   for (const auto& [key, count] : add_onsets(document, comparison))
@@ -193,16 +194,17 @@ void add_results(const JsonView& document, const fs::path& file, analysis::Compa
         {.file = file.string()},
         "no point of the sweep has a place in the diagram, which needs Gamma, N_l and the phase; "
         "add \"phase\" to the results of its plan.");
+  return notes;
 }
 
 }  // namespace
 
-void add_sweep(const fs::path& file, analysis::Comparison& comparison, std::vector<std::string>& notes) {
-  add_results(read_results(file), file, comparison, notes);
+std::vector<std::string> add_sweep(const fs::path& file, analysis::Comparison& comparison) {
+  return add_results(read_results(file), file, comparison);
 }
 
-void add_sweeps(const std::vector<fs::path>& files, analysis::Comparison& comparison,
-                std::vector<std::string>& notes) {
+std::vector<std::string> add_sweeps(const std::vector<fs::path>& files, analysis::Comparison& comparison) {
+  std::vector<std::string> notes;
   std::map<std::string, fs::path> known;  // by the points, as text
   for (const fs::path& file : files) {
     const JsonView document = read_results(file);
@@ -211,8 +213,9 @@ void add_sweeps(const std::vector<fs::path>& files, analysis::Comparison& compar
       throw ConfigError({.file = {}, .key = "--sweep"},
                         fmt::format("{} and {} hold the same points; name the sweep once.",
                                     same->second.string(), file.string()));
-    add_results(document, file, comparison, notes);
+    for (std::string& note : add_results(document, file, comparison)) notes.push_back(std::move(note));
   }
+  return notes;
 }
 
 }  // namespace twincell::twin

@@ -6,17 +6,14 @@
 #include <cmath>
 #include <utility>
 
-#include "calibration/drive/plate_drive.hpp"
 #include "core/atomic_file.hpp"
 #include "core/config.hpp"
-#include "core/counted.hpp"
 #include "core/median.hpp"
 #include "core/output_rules.hpp"
+#include "core/plural.hpp"
 #include "core/sha256.hpp"
 #include "core/toml_leaves.hpp"
-#include "imaging/stack/open_frames.hpp"
 #include "imaging/track/bed_in_cell.hpp"
-#include "imaging/track/track.hpp"
 #include "imaging/track/write_trajectory.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/run/simulation.hpp"
@@ -51,7 +48,7 @@ void require_room(const fs::path& folder, int twins) {
   if (const fs::path scene = folder / "scene.toml"; fs::is_regular_file(scene, ec)) {
     const std::string text = read_text_file(scene);
     const std::size_t line = text.starts_with(head) ? text.find('\n', head.size()) : std::string::npos;
-    // Versions before 0.2 wrote no checksum.
+    // Earlier scenes have no checksum.
     if (line != std::string::npos && text.compare(head.size(), kChecksum.size(), kChecksum) == 0 &&
         text.substr(head.size(), line + 1 - head.size()) != checksum_line(text.substr(line + 1)))
       throw ConfigError({.file = scene.string()},
@@ -141,107 +138,47 @@ double simulate(const sim::Scene& scene, const fs::path& output, const TwinProve
   return fall;
 }
 
-/// The cell of the film with everything that a twin needs.
-struct FilmedCell {
-  imaging::CellDescription cell;
-  std::string drive;  ///< the drive as measured on the plate, in a sentence; empty if the cell states it
-};
-
 /// Reads the cell and measures its drive on the plate if the cell states none.
-FilmedCell read_filmed_cell(const TwinOptions& options, const ProgressOf& progress) {
-  FilmedCell filmed{.cell = imaging::read_cell(options.cell_file), .drive = {}};
-  if (options.phase_lock) filmed.cell.phase_lock = *options.phase_lock;
-  require_known(filmed.cell, options.cell_file);
-  (void)word_of_sides(filmed.cell, options.cell_file);
+calibration::FilmedCell read_filmed_cell(const TwinOptions& options, const ProgressOf& progress) {
+  const imaging::FrameRange range = imaging::frames_of(options.film.locating);
+  calibration::FilmedCell filmed = calibration::stated_cell(options.film, range);
+  require_known(filmed.cell, options.cell_file());
+  (void)word_of_sides(filmed.cell, options.cell_file());
   // Phases from the bed or a list need no lock to the drive.
-  const bool locked = options.phases.method == imaging::PhaseMethod::fixed;
-  if (calibration::lacks_drive(filmed.cell, locked)) {
-    const auto bar = progress("the plate's edge");
-    filmed.drive = calibration::complete_drive(filmed.cell, locked, options.cell_file, options.stack,
-                                               options.frames, options.threads, *bar);
-  }
-  return filmed;
+  const bool locked = filmed.source.method == imaging::PhaseMethod::fixed;
+  if (!calibration::lacks_drive(filmed.cell, locked)) return filmed;
+  const auto bar = progress("the plate's edge");
+  calibration::CompletedDrive completed = calibration::complete_drive(
+      std::move(filmed.cell), locked, options.cell_file(), options.stack, range, options.film.threads, *bar);
+  return {std::move(completed.cell), std::move(filmed.source), std::move(completed.measured)};
 }
 
-/// Checks the twin's scene before the stack is read. Where the stack determines the phases, their number is
-/// not known yet; any number serves.
-void check_scene(imaging::CellDescription& cell, const std::function<void()>& read_scene) {
+/// The cell with a number of phases. Where the stack determines the phases, their number is not known before
+/// it is tracked; any number serves to check a scene.
+imaging::CellDescription with_phases(imaging::CellDescription cell) {
   constexpr int kSomePhases = 20;
-  const int stated = cell.phase_lock.frames_per_cycle;
   if (!cell.phase_lock.locked()) cell.phase_lock.frames_per_cycle = kSomePhases;
-  read_scene();
-  cell.phase_lock.frames_per_cycle = stated;
-}
-
-/// Whether a stated drive is to be checked against the frames.
-bool checks_drive(const FilmedCell& filmed, const TwinOptions& options) {
-  return filmed.drive.empty() && !options.trust_stated_drive;
+  return cell;
 }
 
 /// \throws ConfigError if the frames show another drive than the cell states
 void require_agreement(const calibration::DriveCheck& check, const TwinOptions& options) {
   if (!check.disagreement.empty())
-    throw ConfigError({.file = options.cell_file.string(), .key = "drive"},
+    throw ConfigError({.file = options.cell_file(), .key = "drive"},
                       check.disagreement + "; correct one of them, or use --trust-stated-drive.");
 }
 
-/// Checks a stated drive against the plate in the frames.
-calibration::DriveCheck check_plate(const FilmedCell& filmed, const TwinOptions& options,
-                                    const ProgressOf& progress) {
-  if (!checks_drive(filmed, options)) return {.not_comparable = "the stated drive is trusted"};
-  const auto bar = progress("the plate's edge");
-  calibration::DriveCheck check =
-      calibration::check_by_plate(filmed.cell, options.stack, options.frames, options.threads, *bar,
-                                  options.phases.method == imaging::PhaseMethod::fixed);
-  require_agreement(check, options);
-  return check;
-}
-
-imaging::LocatorOptions locator_for(const imaging::CellDescription& cell, const TwinOptions& options) {
-  imaging::LocatorOptions locator = options.locator;
-  locator.preprocess.bright |= cell.bright;
-  if (locator.diameter_px <= 0 && cell.pixels_per_sigma) {
-    locator.diameter_px = *cell.pixels_per_sigma;
-    locator.diameter_of_scale = true;
-  }
-  return locator;
-}
-
-/// Tracks the film into `output`. If the plate showed no drive, the bed checks the stated one before the
-/// trajectory is kept. Completes the frames per cycle of the cell, and scale and phases of the twin.
-void track_experiment(imaging::FrameSource& frames, FilmedCell& filmed, calibration::DriveCheck check,
-                      const TwinOptions& options, const TwinProvenance& provenance,
-                      const ProgressOf& progress, Twin& twin) {
-  imaging::CellDescription& cell = filmed.cell;
-  const auto bar = progress("tracking");
-  imaging::PhaseSource phases = options.phases;
-  phases.trusted = options.trust_stated_drive;
-  const imaging::TrackedStack stack =
-      imaging::track_stack(frames, locator_for(cell, options), options.link, cell, options.threads, *bar,
-                           phases, twin.experiment.parent_path(), options.region);
-  cell.phase_lock.frames_per_cycle = stack.phases.frames_per_cycle;
-  twin.phases = stack.phases;
-  twin.missing_beads = stack.missing_beads();
-  twin.paler_doubt = stack.paler_doubt();
-  twin.aspect_doubt = stack.aspect_doubt();
-  twin.still_discs = stack.still_discs();
-  twin.surplus_tracks = stack.surplus_tracks();
-  twin.scale_doubt = stack.scale_doubt(cell);
-  imaging::TrackPlan plan = imaging::plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
-  if (checks_drive(filmed, options) && check.by.empty()) {
-    calibration::BedSteps bed(plan.info);
-    imaging::write_trajectory(stack, plan, bed);
-    check = calibration::check_by_bed(bed, plan.info, check);
-    require_agreement(check, options);
-  }
-  if (filmed.drive.empty()) calibration::record(check, plan.info);
-  plan.info.provenance_json = provenance.of_experiment(cell);
-  H5mdWriter writer(twin.experiment, plan.info);
-  imaging::BedInCell watched(writer, plan.info, cell, stack.height_px);
-  imaging::write_trajectory(stack, plan, watched);
+/// Writes the tracked film into `output`. \returns the doubts about it, in sentences
+std::vector<std::string> write_experiment(calibration::TrackedFilm& film, const fs::path& output,
+                                          const TwinProvenance& provenance) {
+  film.plan.info.provenance_json = provenance.of_experiment(film.cell);
+  H5mdWriter writer(output, film.plan.info);
+  imaging::BedInCell watched(writer, film.plan.info, film.cell, film.stack.height_px);
+  imaging::write_trajectory(film.stack, film.plan, watched);
   writer.finish();
-  twin.cell_doubts = watched.doubts();
-  twin.pixels_per_sigma = plan.pixel_frame.pixels_per_sigma;
+  std::vector<std::string> doubts = film.stack.doubts(film.cell);
+  for (const std::string& doubt : watched.doubts()) doubts.push_back(doubt);
+  return doubts;
 }
 
 /// Simulates the scene once from the measured positions, and `options.twins` - 1 times from shifted ones.
@@ -257,7 +194,7 @@ void simulate_twins(const std::string& scene, Twin& twin, const TwinOptions& opt
     twin.simulations.push_back(folder / fmt::format("simulation-{}.h5", k));
     const sim::Scene read = sim::read_scene_text(scene, twin.scene.string(), assignments, folder);
     const auto bar = progress(fmt::format("simulating twin {}", k));
-    const double fall = simulate(read, twin.simulations.back(), provenance, options.threads, *bar);
+    const double fall = simulate(read, twin.simulations.back(), provenance, options.film.threads, *bar);
     if (k == 1) twin.fall = fall, twin.discarded = read.discard;
   }
 }
@@ -311,31 +248,42 @@ std::string twin_scene(const std::string& base, const std::string& base_name,
 Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinProvenance& provenance,
                const ProgressOf& progress) {
   // Read and check everything before the stack is tracked.
-  FilmedCell filmed = read_filmed_cell(options, progress);
+  calibration::FilmedCell filmed = read_filmed_cell(options, progress);
   Twin twin{.experiment = folder / "experiment.h5", .scene = folder / "scene.toml"};
-  twin.drive = filmed.drive;
+  twin.drive = filmed.measured_drive;
   const std::string base = options.scene.empty() ? std::string() : read_text_file(options.scene);
-  const auto scene_text = [&](std::size_t frame, std::int64_t cycles) {
-    return twin_scene(base, options.scene.string(), filmed.cell, twin.experiment.filename(), frame, cycles);
+  const auto scene_text = [&](const imaging::CellDescription& cell, std::size_t frame, std::int64_t cycles) {
+    return twin_scene(base, options.scene.string(), cell, twin.experiment.filename(), frame, cycles);
   };
-  check_scene(filmed.cell, [&] {
-    try {
-      (void)sim::read_scene_text(scene_text(0, 1), twin.scene.string(), options.assignments, folder);
-    } catch (const ConfigError& e) {
-      // The user knows the file that was named, not the scene that is made of it and of the cell.
-      if (options.scene.empty() || !std::string(e.what()).starts_with(twin.scene.string())) throw;
-      throw ConfigError(
-          {.file = options.scene.string()},
-          "with the cell's values: " + std::string(e.what()).substr(twin.scene.string().size() + 1));
-    }
-  });
+  try {
+    (void)sim::read_scene_text(scene_text(with_phases(filmed.cell), 0, 1), twin.scene.string(),
+                               options.assignments, folder);
+  } catch (const ConfigError& e) {
+    // The user knows the file that was named, not the scene that is made of it and of the cell.
+    if (options.scene.empty() || !std::string(e.what()).starts_with(twin.scene.string())) throw;
+    throw ConfigError(
+        {.file = options.scene.string()},
+        "with the cell's values: " + std::string(e.what()).substr(twin.scene.string().size() + 1));
+  }
   require_room(folder, options.twins);
-  const calibration::DriveCheck check = check_plate(filmed, options, progress);
-  const auto frames = options.open_stack ? options.open_stack() : imaging::open_frames(options.stack);
-  claim_shared_folder(folder, twin_folder());
+  calibration::DriveCheck check = calibration::check_plate(filmed, options.stack, options.film, progress);
+  require_agreement(check, options);
 
   // Experiment, scene, simulations.
-  track_experiment(*frames, filmed, check, options, provenance, progress, twin);
+  calibration::FilmOptions of_film = options.film;
+  of_film.folder = folder;
+  const auto open = [&](const imaging::LocatorOptions& locator) {
+    auto frames = options.open(locator);
+    claim_shared_folder(folder, twin_folder());  // for a stack that can be opened
+    return frames;
+  };
+  calibration::TrackedFilm film =
+      calibration::track_filmed_cell(open, std::move(filmed), std::move(check), of_film, progress);
+  require_agreement(film.check, options);
+  film.cell.phase_lock.frames_per_cycle = film.stack.phases.frames_per_cycle;
+  twin.doubts = write_experiment(film, twin.experiment, provenance);
+  twin.phases = film.stack.phases;
+  twin.pixels_per_sigma = film.plan.pixel_frame.pixels_per_sigma;
   const FirstPacking first = find_first_packing(H5mdReader(twin.experiment));
   twin.beads = first.beads;
   twin.cycles = first.cycles;
@@ -343,8 +291,8 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
   if (options.discard >= twin.cycles)
     throw ConfigError({.file = {}, .key = "--discard"},
                       fmt::format("is {}, but {} shows only {}.", options.discard, options.stack.string(),
-                                  counted(twin.cycles, "cycle")));
-  const std::string below = scene_text(first.frame, first.cycles);
+                                  plural(twin.cycles, "cycle")));
+  const std::string below = scene_text(film.cell, first.frame, first.cycles);
   const std::string scene = kSceneHead + checksum_line(below) + below;
   write_text_file(twin.scene, scene, Product::text("a scene", kSceneHead));
   simulate_twins(scene, twin, options, folder, provenance, progress);

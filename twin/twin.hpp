@@ -10,15 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "calibration/film/track_film.hpp"
 #include "core/output_kind.hpp"
 #include "core/progress.hpp"
 #include "imaging/cell/cell.hpp"
-#include "imaging/link/link.hpp"
-#include "imaging/locate/locator.hpp"
-#include "imaging/preprocess/region.hpp"
-#include "imaging/stack/chosen_frames.hpp"
-#include "imaging/stack/frame_source.hpp"
-#include "imaging/track/link_detections.hpp"
+#include "imaging/phase/phase_lock.hpp"
 #include "sim/scene/scene.hpp"
 #include "twin/comparison.hpp"
 
@@ -26,23 +22,18 @@ namespace twincell::twin {
 
 /// Options of make_twin.
 struct TwinOptions {
-  std::filesystem::path stack, cell_file;
+  std::filesystem::path stack;
+  calibration::FilmOptions film;         ///< with the cell file, which must be named
+  calibration::OpenFrames open;          ///< opens the stack to be tracked, with its chosen frames
   std::filesystem::path scene;           ///< contacts, step and the like; empty: preset of paper 1
   std::vector<std::string> assignments;  ///< "section.key=value", override all other settings
   /// Number of simulations. The first starts exactly from the measured positions. In each of the others every
   /// bead is shifted at random, with the simulation's own seed, by the uncertainty of the measured positions.
   int twins = 3;
-  imaging::LocatorOptions locator;  ///< complete but for what configure_locator finds
-  imaging::Region region;           ///< part of the picture that is searched
-  imaging::FrameRange frames;       ///< the frames of the stack that are tracked
-  /// Opens the stack to be tracked, with its chosen frames; empty: the whole stack, as it is.
-  std::function<std::unique_ptr<imaging::FrameSource>()> open_stack;
-  imaging::LinkOptions link;
-  int threads = 1;
-  bool trust_stated_drive = false;  ///< do not check the stated drive and phase lock against the frames
-  std::int64_t discard = 0;         ///< cycles that the comparison will leave out of both sides
-  imaging::PhaseSource phases;      ///< source of the phases, if not the cell's frames per cycle
-  std::optional<imaging::PhaseLock> phase_lock;  ///< replaces that of the cell
+  std::int64_t discard = 0;  ///< cycles that the comparison will leave out of both sides
+
+  /// CELL.toml of the stack.
+  [[nodiscard]] const std::string& cell_file() const { return film.request.cell_file; }
 };
 
 /// Provenance texts of the files, which the command-line program supplies.
@@ -68,13 +59,7 @@ struct Twin {
   double fall = 0;              ///< mean fall of the beads of the first packing while they settle, sigma
   std::string drive;            ///< measured drive in a sentence; empty if the cell states the drive
   imaging::PhaseTable phases;   ///< of the stack
-  std::string missing_beads;    ///< LinkedDetections::missing_beads of the stack
-  std::string paler_doubt;      ///< TrackedStack::paler_doubt of the stack
-  std::string aspect_doubt;     ///< TrackedStack::aspect_doubt of the stack
-  std::string still_discs;      ///< LinkedDetections::still_discs of the stack
-  std::string surplus_tracks;   ///< LinkedDetections::surplus_tracks of the stack
-  std::string scale_doubt;      ///< TrackedStack::scale_doubt of the stack
-  std::vector<std::string> cell_doubts;  ///< BedInCell::doubts of the stack
+  std::vector<std::string> doubts;  ///< TrackedStack::doubts and BedInCell::doubts of the stack
 
   /// Whether the film begins in mid-motion and the simulations record their way from rest to that motion:
   /// nothing is discarded and the first packing falls by more than 0.1 sigma.

@@ -26,14 +26,14 @@ void add_pictures(const TrajectorySource& filmed, const std::filesystem::path& f
   }
   std::vector<std::int64_t> numbers;
   std::vector<std::size_t> moments;
-  for (std::size_t m = 0; m < show.moments.size(); ++m)
-    if (const auto found = number_of_step.find(show.moments[m].frame.step); found != number_of_step.end()) {
+  for (std::size_t m = 0; m < show.snapshots.size(); ++m)
+    if (const auto found = number_of_step.find(show.snapshots[m].frame.step); found != number_of_step.end()) {
       numbers.push_back(found->second);
       moments.push_back(m);
     }
   const auto source = imaging::open_frames(frames);
   const auto pictures = imaging::picture_frames(*source, numbers);
-  show.pictures.assign(show.moments.size(), {});
+  show.pictures.assign(show.snapshots.size(), {});
   for (std::size_t i = 0; i < moments.size(); ++i) show.pictures[moments[i]] = pictures[i];
   const double s = *cell.pixels_per_sigma;
   show.camera = {
@@ -62,8 +62,9 @@ void film_and_track(const TrajectorySource& simulation, const imaging::CameraOpt
   locator.diameter_px = *cell.pixels_per_sigma;
   locator.preprocess.bright = cell.bright;
   const auto source = imaging::open_frames(frames);
-  const imaging::TrackedStack stack =
-      imaging::track_stack(*source, locator, {}, cell, threads, progress, {.trusted = true}, film.part());
+  const imaging::TrackedStack stack = imaging::track_stack(
+      *source, cell,
+      {.locator = locator, .phases = {.trusted = true}, .threads = threads, .folder = film.part()}, progress);
   imaging::TrackPlan plan = imaging::plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
   // If the simulation marks no tracers, the film has no darker beads; the analysis then chooses the tracers
   // of both by the same rule.

@@ -134,9 +134,9 @@ class Stress : public Observable {
     const double low = std::min(top, top - branch.z()), high = std::max(top, top - branch.z());
     const auto first = static_cast<std::int64_t>(std::floor(low / thickness_)),
                last = static_cast<std::int64_t>(std::floor(high / thickness_));
-    constexpr std::int64_t kMostSlabs = 100'000;  // a damaged file may have a bead at 1e7
+    constexpr std::int64_t kMaxSlabs = 100'000;  // a damaged file may have a bead at 1e7
     constexpr double kRounding = 1e-6;  // a wall lies on the border of a slab up to the rounding of overlaps
-    if (last - first > kMostSlabs) return;
+    if (last - first > kMaxSlabs) return;
     for (std::int64_t k = first; k <= last; ++k) {
       const double bottom = static_cast<double>(k) * thickness_;
       const double share =

@@ -16,15 +16,15 @@ namespace {
 constexpr NamedResult kResults[] = {{"stress_field"}, {"stress_field_x"}, {"stress_field_z"}};
 const char* const kSource = "Goldhirsch 2010";
 constexpr double kReach = 4 * kCoarseWidth;  // sigma, beyond which the Gaussian is below 4e-4 of its maximum
-constexpr double kMostPoints = 1e6;          // a damaged file may have a bead at 1e7 sigma
-constexpr std::size_t kMostColumns = 10'000;
+constexpr double kMaxPoints = 1e6;           // a damaged file may have a bead at 1e7 sigma
+constexpr std::size_t kMaxColumns = 10'000;
 
 class StressField : public Observable {
  public:
   explicit StressField(const AnalysisContext& context) : info_(context.info) {
     width_ = info_.box.size().x();
     columns_ =
-        std::min(kMostColumns,
+        std::min(kMaxColumns,
                  static_cast<std::size_t>(std::max(1.0, std::round(width_ / context.options.field_cell))));
     cell_ = width_ / static_cast<double>(columns_);
     depth_ = info_.box.dimension == 2 ? 1 : info_.box.size().y();
@@ -32,7 +32,7 @@ class StressField : public Observable {
     if (!info_.box.periodic(Axis::z)) return;
     period_ = info_.box.size().z();
     rows_of_period_ =
-        std::min(kMostColumns,
+        std::min(kMaxColumns,
                  static_cast<std::size_t>(std::max(1.0, std::round(period_ / context.options.field_cell))));
     row_height_ = period_ / static_cast<double>(rows_of_period_);
   }
@@ -45,7 +45,7 @@ class StressField : public Observable {
       const Vec3 end = frame.position[static_cast<std::size_t>(c.i)] - plate * Vec3::UnitZ();
       if (const Vec3 branch = branch_vector(c, info_);
           end.allFinite() && (rows_of_period_ > 0 ||
-                              std::abs(end.z()) / row_height_ * static_cast<double>(columns_) < kMostPoints))
+                              std::abs(end.z()) / row_height_ * static_cast<double>(columns_) < kMaxPoints))
         add_contact(end, branch, c.force());
     }
     ++frames_;
@@ -124,9 +124,9 @@ class StressField : public Observable {
 
   /// Mean over the length of the branch of the Gaussian in one dimension, at `along` from its end.
   static double mean_along(double along, double length) {
-    constexpr double kShort = 1e-6;
+    constexpr double kMinLength_sigma = 1e-6;
     const double scale = 1 / (std::numbers::sqrt2 * kCoarseWidth);
-    if (length < kShort)
+    if (length < kMinLength_sigma)
       return std::exp(-along * along * scale * scale) / (std::sqrt(2 * std::numbers::pi) * kCoarseWidth);
     return (std::erf(along * scale) - std::erf((along - length) * scale)) / (2 * length);
   }

@@ -132,14 +132,14 @@ class Profiles : public Observable {
 
  private:
   /// Local temperature averaged over volume instead of over beads. Because the top is open, the volume is
-  /// that of the lowest slabs that contain the share kMostOfTheBeads of the velocities.
+  /// that of the lowest slabs that contain the share kMaxOfTheBeads of the velocities.
   [[nodiscard]] Result volume_mean() const {
     std::size_t all = 0;
     for (const auto& [k, slab] : slabs_) all += slab.w.n;
     double sum = 0;
     std::size_t held = 0, n = 0;
     for (const auto& [k, slab] : slabs_) {
-      if (static_cast<double>(held) >= kMostOfTheBeads * static_cast<double>(all)) break;
+      if (static_cast<double>(held) >= kMaxOfTheBeads * static_cast<double>(all)) break;
       held += slab.w.n;
       if (slab.w.n < kProfileSamples) continue;
       sum += slab.w.temperature();
@@ -162,7 +162,7 @@ class Profiles : public Observable {
     return slabs_in_period_ == 0 ? k : ((k % slabs_in_period_) + slabs_in_period_) % slabs_in_period_;
   }
 
-  static constexpr double kMostOfTheBeads = 0.99;
+  static constexpr double kMaxOfTheBeads = 0.99;
   const TrajectoryInfo& info_;
   std::int64_t slabs_in_period_ = 0;  ///< along a periodic z; 0: not periodic
   double thickness_ = 1, foot_ = 0;   ///< of a slab; lower side of slab 0, sigma

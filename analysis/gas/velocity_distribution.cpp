@@ -22,14 +22,14 @@ class VelocityDistribution : public Observable {
 
  private:
   static void add_component(const Frame& frame, int axis, SeriesAverage& average) {
-    constexpr double kFewest = 4;
+    constexpr double kMinBeads = 4;
     double n = 0, sum = 0, second = 0, fourth = 0;
     const auto each = [&](auto&& visit) {
       for (std::size_t i = 0; i < frame.velocity.size(); ++i)
         if (frame.present(i) && std::isfinite(frame.velocity[i][axis])) visit(frame.velocity[i][axis]);
     };
     each([&](double v) { ++n, sum += v; });
-    if (n < kFewest) return;
+    if (n < kMinBeads) return;
     each([&](double v) {
       const double square = (v - sum / n) * (v - sum / n);
       second += square / n;

@@ -28,7 +28,7 @@ constexpr double kThrowingSupport = 2;
 constexpr double kThrownSpeed = 0.1;
 /// Support, in weights of the bed, from which a single instant ends a flight.
 constexpr double kLandingSupport = 0.75;
-constexpr int kFewestPhases = 8;
+constexpr int kMinPhases = 8;
 constexpr int kInstantsPerCycle = 20;  ///< instants per cycle from which second differences are taken
 
 /// Height of the centre of mass at one instant.
@@ -85,8 +85,8 @@ class BedFlight : public Observable {
       reason_ = "the trajectory does not state its drive";
     else if (info_.drive->axis != Axis::z)
       reason_ = "the drive is not along z";
-    else if (!info_.columns.phase || info_.phases_per_cycle < kFewestPhases)
-      reason_ = fmt::format("the detection of flights needs at least {} frames per cycle", kFewestPhases);
+    else if (!info_.columns.phase || info_.phases_per_cycle < kMinPhases)
+      reason_ = fmt::format("the detection of flights needs at least {} frames per cycle", kMinPhases);
     if (!reason_.empty()) return;
     gravity_ = info_.drive->gravity * info_.drive->downward_share;
     if (!(gravity_ > 0)) reason_ = "gravity does not pull the bed onto the plate";

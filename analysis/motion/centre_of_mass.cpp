@@ -97,8 +97,8 @@ class CentreOfMass : public Observable {
                            kSource);
     const double rest = *context_.rest_height;
     // Shaking compacts a loose bed by a tenth at most; a state far below the height at rest does not exist.
-    constexpr double kLowest = 0.8;
-    if (h.value() < kLowest * rest)
+    constexpr double kMinHeightRatio = 0.8;
+    if (h.value() < kMinHeightRatio * rest)
       return absent_result(
           name,
           fmt::format("the rest height, {:.6g} sigma, is {:.3g} times the mean height during the "

@@ -8,7 +8,7 @@
 
 #include "analysis/motion/bed_phase.hpp"
 #include "core/constants.hpp"
-#include "core/counted.hpp"
+#include "core/plural.hpp"
 
 namespace twincell::analysis {
 namespace {
@@ -70,7 +70,7 @@ void DetectionLimit::add_results(std::size_t cycles, std::vector<Result>& all) c
       "s_b_noise", floor,
       fmt::format("s_b of a bed at rest from the camera's noise alone, sigma_z/sqrt(N_t N_f) with {} "
                   "tracers and {}; {}",
-                  n_tracers, counted(used, "cycle"), against_threshold(floor))));
+                  n_tracers, plural(used, "cycle"), against_threshold(floor))));
   all.push_back(
       noise_result("s_j_noise", noise(), "contribution of the noise alone to s_j, added in quadrature"));
 }

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "analysis/motion/bed_phase.hpp"
-#include "analysis/motion/bouncing.hpp"
+#include "analysis/motion/bouncing_measure.hpp"
+#include "analysis/motion/convection_measure.hpp"
 #include "analysis/motion/detection_limit.hpp"
 #include "analysis/motion/tracer_line.hpp"
-#include "analysis/motion/tracer_spread.hpp"
 #include "core/constants.hpp"
 
 namespace twincell::analysis {

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Thresholds of bouncing and convection, and the phase of the bed (Fortini & Huang 2015, app. B). The parts
-/// are in bouncing.hpp (s_b), tracer_spread.hpp (s_c), detection_limit.hpp and bed_phase.hpp.
+/// are in bouncing_measure.hpp (s_b), convection_measure.hpp (s_c), detection_limit.hpp and bed_phase.hpp.
 
 #include "analysis/observable/observable.hpp"
 

@@ -117,7 +117,7 @@ std::vector<double> stream_function(const std::vector<double>& circulation, std:
 }
 
 std::size_t count_rolls(const CirculationBlocks& blocks, double least) {
-  assert(blocks.blocks.size() >= kFewestRollBlocks && blocks.columns > 0);
+  assert(blocks.blocks.size() >= kMinRollBlocks && blocks.columns > 0);
   const Loops loops(blocks.blocks.front(), blocks.columns, blocks.periodic);
   if (loops.n() == 0) return 0;
   const auto n = static_cast<Eigen::Index>(loops.n()),

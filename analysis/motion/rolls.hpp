@@ -12,12 +12,12 @@ namespace twincell::analysis {
 inline constexpr double kRollFalseAlarm = 0.05;
 /// Minimum number n of blocks of cycles that distinguish a roll from chance. Of the 2^n combinations of
 /// signs, two give the observed field up to its sign, and 2/2^n must not exceed kRollFalseAlarm.
-inline constexpr std::size_t kFewestRollBlocks = 6;
+inline constexpr std::size_t kMinRollBlocks = 6;
 inline constexpr double kSmallestRoll =
     0.1;  ///< as a share of the largest |psi|; weaker regions are not rolls
 
-/// Circulations around the loops of a grid (Circulation::plaquettes in convection.hpp), one array per block
-/// of cycles. The mean over the blocks is the circulation of the whole run. A loop is NaN either in all
+/// Circulations around the loops of a grid (Circulation::plaquettes in convection_field.hpp), one array per
+/// block of cycles. The mean over the blocks is the circulation of the whole run. A loop is NaN either in all
 /// blocks or in no block.
 struct CirculationBlocks {
   std::size_t columns = 0;
@@ -40,7 +40,7 @@ std::vector<double> stream_function(const std::vector<double>& circulation, std:
 /// and its mirror image are equally likely, so that T is valid for any distribution of the blocks and any
 /// spatial correlation of their noise. Regions whose |psi| stays below `least` (sigma^2 per cycle) or below a
 /// tenth of the largest |psi| are left out. The same blocks give the same number.
-/// \pre blocks.blocks.size() >= kFewestRollBlocks
+/// \pre blocks.blocks.size() >= kMinRollBlocks
 std::size_t count_rolls(const CirculationBlocks& blocks, double least);
 
 }  // namespace twincell::analysis

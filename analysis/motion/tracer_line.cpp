@@ -8,12 +8,12 @@
 
 #include "analysis/motion/bed_phase.hpp"
 #include "core/constants.hpp"
-#include "core/counted.hpp"
+#include "core/plural.hpp"
 
 namespace twincell::analysis {
 namespace {
 
-constexpr std::size_t kFewestCycles = 8;
+constexpr std::size_t kMinCycles = 8;
 constexpr double kCameToRest =
     0.2;  ///< motion of the second half relative to the first, below which it is annealed
 
@@ -123,9 +123,9 @@ std::string drift_name(Drift drift) {
 
 DriftVerdict judge_drift(const TracerLine& line, double noise) {
   DriftVerdict verdict;
-  if (line.n() < kFewestCycles || line.n_tracers < 2) {
-    verdict.reason = fmt::format("{} and {}; at least {} and 2 are needed", counted(line.n(), "cycle"),
-                                 counted(line.n_tracers, "tracer"), kFewestCycles);
+  if (line.n() < kMinCycles || line.n_tracers < 2) {
+    verdict.reason = fmt::format("{} and {}; at least {} and 2 are needed", plural(line.n(), "cycle"),
+                                 plural(line.n_tracers, "tracer"), kMinCycles);
     return verdict;
   }
   const std::size_t middle = line.n() / 2, end = line.n() - 1;

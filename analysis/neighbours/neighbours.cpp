@@ -24,7 +24,7 @@ class CellLayout {
         continue;
       }
       const double period = box.upper[axis] - box.lower[axis];
-      const double fitting = std::min(std::floor(period / cutoff), static_cast<double>(kLargest));
+      const double fitting = std::min(std::floor(period / cutoff), static_cast<double>(kMaxCell));
       origin_[axis] = box.lower[axis];
       periodic_count_[a] = fitting >= 3 ? static_cast<std::int64_t>(fitting) : 1;
       alone_[a] = periodic_count_[a] == 1;
@@ -37,7 +37,7 @@ class CellLayout {
     Cell cell{};
     for (std::size_t a = 0; a < 3; ++a) {
       const auto axis = static_cast<Eigen::Index>(a);
-      const double last = static_cast<double>(periodic_count_[a] > 0 ? periodic_count_[a] - 1 : kLargest);
+      const double last = static_cast<double>(periodic_count_[a] > 0 ? periodic_count_[a] - 1 : kMaxCell);
       // Distant beads share the last cell: the search there is slower, but no neighbour is missed.
       cell[a] = static_cast<std::int64_t>(
           std::clamp(std::floor((wrapped[axis] - origin_[axis]) / width_[axis]), 0.0, last));
@@ -64,7 +64,7 @@ class CellLayout {
 
  private:
   static constexpr int kBits = 21;
-  static constexpr std::int64_t kLargest = (std::int64_t{1} << kBits) - 4;
+  static constexpr std::int64_t kMaxCell = (std::int64_t{1} << kBits) - 4;
   const Box& box_;
   Vec3 origin_ = Vec3::Zero();
   Vec3 width_ = Vec3::Ones();

@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/neighbours/bond_order.hpp"
+#include "analysis/neighbours/bond_orientation.hpp"
 #include "analysis/neighbours/neighbours.hpp"
 #include "analysis/neighbours/voronoi.hpp"
 #include "analysis/statistics/statistics.hpp"
@@ -58,7 +58,7 @@ Result mean_of(const SeriesAverage& series, Result r, const std::string& why_abs
 /// `why_absent` if no value is finite.
 Result array_of(const std::vector<double>& values, Result r, const std::string& why_absent);
 
-/// Readings of eq. B4 (s_b_of in bouncing.hpp).
+/// Readings of eq. B4 (s_b_of in bouncing_measure.hpp).
 enum class SbForm { variance, about_rest, as_printed };
 /// All forms with their words.
 inline constexpr std::array kSbForms = {

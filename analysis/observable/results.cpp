@@ -29,10 +29,6 @@ std::string interval_text(const Result& r) {
   return r.interval ? fmt::format("[{:.6g}, {:.6g}]", r.interval->low, r.interval->high) : "-";
 }
 
-nlohmann::json number(double v) {
-  return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr);
-}
-
 nlohmann::json to_json(const Result& r) {
   nlohmann::json j;
   j["source"] = r.source;
@@ -43,10 +39,10 @@ nlohmann::json to_json(const Result& r) {
   if (!r.text.empty()) {
     j["value"] = r.text;
   } else if (r.shape.empty()) {
-    j["value"] = number(r.value());
+    j["value"] = number_or_null(r.value());
   } else {
     j["value"] = nlohmann::json::array();
-    for (const double v : r.values) j["value"].push_back(number(v));
+    for (const double v : r.values) j["value"].push_back(number_or_null(v));
     j["shape"] = r.shape;
   }
   if (!r.unit.empty()) j["unit"] = r.unit;
@@ -54,13 +50,13 @@ nlohmann::json to_json(const Result& r) {
   j["n_of"] = r.n_of;
   j["convention"] = r.convention;
   if (r.interval)
-    j["interval"] = {{"low", number(r.interval->low)},
-                     {"high", number(r.interval->high)},
+    j["interval"] = {{"low", number_or_null(r.interval->low)},
+                     {"high", number_or_null(r.interval->high)},
                      {"level", r.interval->level},
                      {"method", r.interval->method}};
   else if (!r.no_interval.empty())
     j["no_interval"] = r.no_interval;
-  for (const double v : r.of_runs) j["runs"].push_back(number(v));
+  for (const double v : r.of_runs) j["runs"].push_back(number_or_null(v));
   return j;
 }
 

@@ -34,12 +34,12 @@ struct WaveAxis {
 };
 
 WaveAxis wave_axis(const BedWindow& window, int a, const Box& box) {
-  constexpr double kShortest = 2;  // sigma
+  constexpr double kMinTaperedLength = 2;  // sigma
   if (box.dimension == 2 && a == 1) return {};
   const double longest = box.dimension == 2 ? 40 : 10;
   WaveAxis axis{.low = window.low[a], .length = window.high[a] - window.low[a]};
   axis.tapered = !box.periodic(static_cast<Axis>(a)) || axis.length > longest;
-  if (axis.tapered && axis.length < kShortest) return {};
+  if (axis.tapered && axis.length < kMinTaperedLength) return {};
   if (axis.length > longest) {
     axis.low += 0.5 * (axis.length - longest);
     axis.length = longest;

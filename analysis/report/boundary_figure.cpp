@@ -57,8 +57,8 @@ const char* colour_of(BedPhase onset) {
 }
 
 void add_points(Blocks& blocks, const Comparison& c) {
-  constexpr std::size_t kMany = 200;
-  const double size = c.sweep.size() > kMany ? 0.6 : 1.2;
+  constexpr std::size_t kMaxLargePoints = 200;  // points of a sweep that are drawn large
+  const double size = c.sweep.size() > kMaxLargePoints ? 0.6 : 1.2;
   for (const PhaseSign& sign : kSigns) {
     std::string rows;
     for (const SweepPoint& p : c.sweep)

@@ -24,7 +24,7 @@ namespace {
 
 /// How many numbers really differ, and the first of them by name.
 std::string real_differences(const Comparison& c) {
-  constexpr std::size_t kMostNamed = 5;
+  constexpr std::size_t kMaxNamed = 5;
   const bool heights = heights_of(c.matches).size() > 1;
   std::vector<std::string> names;
   std::size_t without_error = 0, without_seeds = 0;
@@ -39,11 +39,11 @@ std::string real_differences(const Comparison& c) {
     return fmt::format("None of the {} compared numbers really differs{}.", c.differences.size(),
                        without_error > 0 ? fmt::format("; of {} no error is known", without_error) : "");
   const std::size_t n = names.size();
-  if (n > kMostNamed) names.resize(kMostNamed);
+  if (n > kMaxNamed) names.resize(kMaxNamed);
   std::string text =
       fmt::format("{} of the {} compared numbers really differ{}: {}{}.", n, c.differences.size(),
                   n == 1 ? "s" : "", fmt::join(names, heights ? "; " : ", "),
-                  n > kMostNamed ? fmt::format(" and {} more", n - kMostNamed) : "");
+                  n > kMaxNamed ? fmt::format(" and {} more", n - kMaxNamed) : "");
   // Two standard errors are exceeded by chance in 4.6 % of the cases.
   constexpr double kByChance = 0.0455;
   const double by_chance = kByChance * static_cast<double>(c.differences.size() - without_error);

@@ -27,17 +27,17 @@ constexpr std::array<SeriesStyle, 8> kSeries = {{{analysis::colours::kCurves[0],
 
 constexpr double kMargin = 0.04;
 /// Logarithmic axes shorter than this have tics at 1, 2, 5 times a power of ten.
-constexpr double kShort = 1e3;
+constexpr double kMinLongRatio = 1e3;
 
 constexpr const char* kBandColour = "#E3E3E3";
 const std::string kBand = fmt::format("behind fs solid noborder fc rgb '{}'", kBandColour);
 
-bool is_long(const Axis& a) {
-  return a.logarithmic && a.high / a.low >= kShort;
+bool is_long(const PlotAxis& a) {
+  return a.logarithmic && a.high / a.low >= kMinLongRatio;
 }
 
 /// Tics at 1, 2, 5 times the powers of ten, the other multiples without a number.
-std::string plain_tics(const Axis& a) {
+std::string plain_tics(const PlotAxis& a) {
   std::string tics;
   const int from = static_cast<int>(std::floor(std::log10(a.low))),
             to = static_cast<int>(std::floor(std::log10(a.high)));
@@ -53,7 +53,7 @@ std::string plain_tics(const Axis& a) {
 }
 
 /// Distance of the tics of a linear axis, 1, 2 or 5 times a power of ten: 4 to 9 tics.
-double tic_step(const Axis& a) {
+double tic_step(const PlotAxis& a) {
   constexpr double kTics = 4;
   const double least = (a.high - a.low) / (2 * kTics), decade = std::pow(10, std::floor(std::log10(least)));
   for (const double step : {1.0, 2.0, 5.0})
@@ -61,7 +61,7 @@ double tic_step(const Axis& a) {
   return 10 * decade;
 }
 
-std::string one_axis(char name, const Axis& a, bool powers) {
+std::string one_axis(char name, const PlotAxis& a, bool powers) {
   std::string s =
       fmt::format("set {0}label '{1}'\nset {0}range [{2:.9g}:{3:.9g}]\n", name, a.label, a.low, a.high);
   if (!a.logarithmic)
@@ -125,14 +125,14 @@ std::string head() {
   return s;
 }
 
-void Axis::show(double v) {
+void PlotAxis::show(double v) {
   if (!std::isfinite(v) || (logarithmic && !(v > 0))) return;
   low = std::min(low, v);
   high = std::max(high, v);
 }
 
-Axis Axis::with_margin() const {
-  Axis a = *this;
+PlotAxis PlotAxis::with_margin() const {
+  PlotAxis a = *this;
   if (empty()) {
     a.low = logarithmic ? 1 : 0;
     a.high = logarithmic ? 10 : 1;
@@ -148,8 +148,8 @@ Axis Axis::with_margin() const {
   return a;
 }
 
-std::string axes(const Axis& x, const Axis& y) {
-  const Axis a = x.with_margin(), b = y.with_margin();
+std::string axes(const PlotAxis& x, const PlotAxis& y) {
+  const PlotAxis a = x.with_margin(), b = y.with_margin();
   const bool powers = is_long(a) || is_long(b);
   return one_axis('x', a, powers) + one_axis('y', b, powers);
 }
@@ -164,10 +164,6 @@ std::string stated_y(double y) {
 }
 std::string stated_band_x(double low, double high) {
   return fmt::format("set object rectangle from first {:.6g},graph 0 to first {:.6g},graph 1 {}\n", low, high,
-                     kBand);
-}
-std::string stated_band_y(double low, double high) {
-  return fmt::format("set object rectangle from graph 0,first {:.6g} to graph 1,first {:.6g} {}\n", low, high,
                      kBand);
 }
 std::string stated_line_entry(const std::string& text) {
@@ -194,7 +190,8 @@ std::string Panels::begin() {
 }
 
 std::string Panels::panel(std::size_t i) const {
-  constexpr double kLeft = 84, kRight = 16, kTop = 40, kBottom = 64;  // px around the frame of a panel
+  constexpr double kMarginLeft = 84, kMarginRight = 16, kMarginTop = 40,
+                   kMarginBottom = 64;  // px around the frame of a panel
   const double wide = width_ / static_cast<double>(columns_),
                tall = (height_ - key_) / static_cast<double>(rows_);
   const std::size_t row = i / columns_, column = i % columns_;
@@ -202,8 +199,8 @@ std::string Panels::panel(std::size_t i) const {
   return fmt::format(
       "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset tmargin at screen {:.4f}\n"
       "set bmargin at screen {:.4f}\n",
-      (left + kLeft) / width_, (left + wide - kRight) / width_, 1 - (top + kTop) / height_,
-      1 - (top + tall - kBottom) / height_);
+      (left + kMarginLeft) / width_, (left + wide - kMarginRight) / width_, 1 - (top + kMarginTop) / height_,
+      1 - (top + tall - kMarginBottom) / height_);
 }
 
 std::string Panels::end(const std::vector<std::string>& entries) const {

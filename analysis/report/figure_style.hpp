@@ -35,7 +35,7 @@ inline constexpr int kCircle = 7, kSquare = 5, kTriangle = 9, kDiamond = 13, kDo
 [[nodiscard]] std::string head();
 
 /// Range of one axis. It grows with the numbers that it must show, and gets a margin when it is set.
-struct Axis {
+struct PlotAxis {
   std::string label;         ///< with its unit, as enhanced text
   bool logarithmic = false;  ///< then the range holds positive numbers only
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
@@ -44,20 +44,19 @@ struct Axis {
   void show(double v);
   [[nodiscard]] bool empty() const { return low > high; }
   /// The range with a margin of 4 % of its length, or of its logarithm.
-  [[nodiscard]] Axis with_margin() const;
+  [[nodiscard]] PlotAxis with_margin() const;
 };
 
 /// Labels, ranges with margins, and tics of both axes. On a logarithmic axis the tics are 10^n; if it is
 /// shorter than three decades, and the other axis is not a longer logarithmic one, 1, 2, 5 times a power of
 /// ten. An empty range is 0 to 1 (1 to 10).
-[[nodiscard]] std::string axes(const Axis& x, const Axis& y);
+[[nodiscard]] std::string axes(const PlotAxis& x, const PlotAxis& y);
 
-/// What a source states, drawn alike everywhere: a dashed line at x or at y, a band of x or of y, and their
+/// What a source states, drawn alike everywhere: a dashed line at x or at y, a band of x, and their
 /// entries in the key (clauses of a plot command).
 [[nodiscard]] std::string stated_x(double x);
 [[nodiscard]] std::string stated_y(double y);
 [[nodiscard]] std::string stated_band_x(double low, double high);
-[[nodiscard]] std::string stated_band_y(double low, double high);
 [[nodiscard]] std::string stated_line_entry(const std::string& text);
 [[nodiscard]] std::string stated_band_entry(const std::string& text);
 /// Look of a line that a source states, for use after `with lines`.

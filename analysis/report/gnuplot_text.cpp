@@ -1,8 +1,11 @@
 #include "analysis/report/gnuplot_text.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -97,6 +100,10 @@ std::string gnuplot_formula(std::string_view formula) {
   }
   if (raised) out += '}';
   return out;
+}
+
+std::string gnuplot_number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "?";
 }
 
 bool is_figure_name(std::string_view name) {

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Conversion of strings from outside the program (a column, a file, a run, a unit) into gnuplot text. No
-/// other code may put such strings into a script.
+/// Conversion of strings from outside the program (a column, a file, a run, a unit) into gnuplot text, which
+/// no other code may put into a script, and of numbers into entries of a data file.
 
 #include <string>
 #include <string_view>
@@ -23,6 +23,10 @@ std::string gnuplot_symbol(std::string_view name);
 /// A formula in words as it is printed: subscripts and exponents, Greek letters, `ln_C` as the logarithm of
 /// C. `ln y = ln_C + alpha ln x` becomes `ln y = ln C + α ln x`, and `x^-b` `x^{-b}`.
 std::string gnuplot_formula(std::string_view formula);
+
+/// A number of a data file with six digits, or `?`, which gnuplot takes for a missing one, if `value` is not
+/// finite.
+std::string gnuplot_number(double value);
 
 /// True if `name` can be a figure's file name in a script: letters, digits, `_`, `-`, `.` of ASCII, not
 /// beginning with `-` or `.`.

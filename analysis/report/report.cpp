@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "analysis/observable/results.hpp"
 #include "analysis/report/boundary_figure.hpp"
@@ -26,18 +23,11 @@ std::string conclusion(const Comparison& c) {
   return fmt::format("{}", fmt::join(conclusion_sentences(c), " "));
 }
 
-nlohmann::json or_null(double v) {
-  return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr);
-}
-
 nlohmann::json differences_json(const std::vector<Difference>& differences,
                                 const std::vector<Match>& matches) {
   nlohmann::json list = nlohmann::json::array();
-  const auto part = [](const std::optional<double>& v) {
-    return or_null(v.value_or(std::numeric_limits<double>::quiet_NaN()));
-  };
   const auto measured = [&](const Measured& m) {
-    return nlohmann::json{{"value", m.value}, {"error", part(m.error)}};
+    return nlohmann::json{{"value", m.value}, {"error", number_or_null(m.error)}};
   };
   for (const Difference& d : differences)
     list.push_back({{"gamma", matches[d.match].gamma},
@@ -47,31 +37,28 @@ nlohmann::json differences_json(const std::vector<Difference>& differences,
                     {"experiment", measured(d.experiment)},
                     {"simulation", measured(d.simulation)},
                     {"difference", d.difference()},
-                    {"filmed", part(d.filmed)},
-                    {"camera", part(d.camera)},
-                    {"statistics", part(d.statistics)},
-                    {"seeds", part(d.seeds)},
-                    {"tracers", part(d.tracers)},
-                    {"defects", part(d.defects)},
+                    {"filmed", number_or_null(d.filmed)},
+                    {"camera", number_or_null(d.camera)},
+                    {"statistics", number_or_null(d.statistics)},
+                    {"seeds", number_or_null(d.seeds)},
+                    {"tracers", number_or_null(d.tracers)},
+                    {"defects", number_or_null(d.defects)},
                     {"remainder", d.remainder()},
-                    {"error", part(d.error())},
+                    {"error", number_or_null(d.error())},
                     {"attribution", d.attribution()}});
   return list;
 }
 
 nlohmann::json boundaries_json(const std::vector<PhaseBoundary>& boundaries) {
   nlohmann::json list = nlohmann::json::array();
-  const auto part = [](const std::optional<double>& v) {
-    return or_null(v.value_or(std::numeric_limits<double>::quiet_NaN()));
-  };
   for (const PhaseBoundary& b : boundaries)
     list.push_back({{"onset", phase_name(b.onset)},
                     {"of", boundary_of(b)},
                     {"n_l", b.n_l},
-                    {"gamma", part(b.gamma())},
-                    {"half_width", part(b.half_width())},
-                    {"below", part(b.below)},
-                    {"above", part(b.above)},
+                    {"gamma", number_or_null(b.gamma())},
+                    {"half_width", number_or_null(b.half_width())},
+                    {"below", number_or_null(b.below)},
+                    {"above", number_or_null(b.above)},
                     {"runs", b.n_runs},
                     {"overlap", b.overlap}});
   return list;
@@ -115,9 +102,9 @@ std::string comparison_json(const Comparison& c) {
     document["runs"].push_back({{"side", side_name(run.side)},
                                 {"run", run.name},
                                 {"start", run.start},
-                                {"gamma", or_null(run.gamma)},
-                                {"k_m", or_null(run.k_m)},
-                                {"n_l", or_null(run.n_l)},
+                                {"gamma", number_or_null(run.gamma)},
+                                {"k_m", number_or_null(run.k_m)},
+                                {"n_l", number_or_null(run.n_l)},
                                 {"n_beads", run.n_beads},
                                 {"n_frames", run.n_frames},
                                 {"phase", phase_name(run.phase)},

@@ -7,15 +7,13 @@
 
 #include "analysis/observable/results.hpp"
 #include "analysis/report/page_parts.hpp"
+#include "core/json_text.hpp"
 
 namespace twincell::analysis {
 namespace {
 
 using nlohmann::json;
 
-json or_null(double v) {
-  return std::isfinite(v) ? json(v) : json(nullptr);
-}
 json thousandths(double v) {
   return std::isfinite(v) ? json(std::lround(1000 * v)) : json(nullptr);
 }
@@ -28,14 +26,14 @@ std::string label_of(const Frame& frame, int phases) {
   return fmt::format("cycle {}, phase {}/{}", frame.cycle, frame.phase, phases);
 }
 
-json moment_json(const Snapshot& moment, int phases, const std::string& picture) {
-  const Frame& f = moment.frame;
+json snapshot_json(const Snapshot& snapshot, int phases, const std::string& picture) {
+  const Frame& f = snapshot.frame;
   const bool locked = f.cycle >= 0 && f.phase >= 0 && phases > 0;
   json j = {{"label", label_of(f, phases)},
             {"step", f.step},
             {"cycle", locked ? json(f.cycle) : json(nullptr)},
             {"fraction", locked ? static_cast<double>(f.phase) / phases : 0.0},
-            {"plate", or_null(moment.plate)},
+            {"plate", number_or_null(snapshot.plate)},
             {"picture", picture.empty() ? json(nullptr) : json(data_uri("image/png", picture))}};
   for (const char* column : {"x", "z", "q6", "psi6", "bonds", "coordination", "structure"})
     j[column] = json::array();
@@ -43,16 +41,16 @@ json moment_json(const Snapshot& moment, int phases, const std::string& picture)
     const bool there = f.present(i) && f.position[i].allFinite();
     j["x"].push_back(there ? thousandths(f.position[i].x()) : json(nullptr));
     j["z"].push_back(there ? thousandths(f.position[i].z()) : json(nullptr));
-    j["q6"].push_back(hundredths(moment.order.q6[i]));
-    j["psi6"].push_back(hundredths(moment.order.psi6[i]));
-    j["bonds"].push_back(moment.order.n_bonds[i]);
-    j["coordination"].push_back(i < moment.coordination.size() ? moment.coordination[i] : 0);
-    j["structure"].push_back(static_cast<int>(structure_of(moment.order, i)));
+    j["q6"].push_back(hundredths(snapshot.order.q6[i]));
+    j["psi6"].push_back(hundredths(snapshot.order.psi6[i]));
+    j["bonds"].push_back(snapshot.order.n_bonds[i]);
+    j["coordination"].push_back(i < snapshot.coordination.size() ? snapshot.coordination[i] : 0);
+    j["structure"].push_back(static_cast<int>(structure_of(snapshot.order, i)));
   }
   return j;
 }
 
-/// Results without those of single beads and the displacement field, which the page takes from moments and
+/// Results without those of single beads and the displacement field, which the page takes from snapshots and
 /// convection.
 json results_of(const Run& run) {
   json all = json::parse(results_json(run.results));
@@ -86,8 +84,8 @@ json convection_json(const std::vector<Result>& results) {
             {"u", json::array()},
             {"w", json::array()}};
   for (std::size_t k = 0; k < rows * columns; ++k) {
-    j["u"].push_back(or_null(field->values[2 * k]));
-    j["w"].push_back(or_null(field->values[2 * k + 1]));
+    j["u"].push_back(number_or_null(field->values[2 * k]));
+    j["w"].push_back(number_or_null(field->values[2 * k + 1]));
   }
   return j;
 }
@@ -96,10 +94,10 @@ json run_json(const Run& run) {
   json j = {{"side", side_name(run.side)},
             {"name", run.name},
             {"start", run.start},
-            {"gamma", or_null(run.gamma)},
-            {"k_m", or_null(run.k_m)},
-            {"omega", or_null(run.omega)},
-            {"n_l", or_null(run.n_l)},
+            {"gamma", number_or_null(run.gamma)},
+            {"k_m", number_or_null(run.k_m)},
+            {"omega", number_or_null(run.omega)},
+            {"n_l", number_or_null(run.n_l)},
             {"phase", phase_name(run.phase)},
             {"beads", run.n_beads},
             {"box", {run.box.lower.x(), run.box.upper.x(), run.box.lower.z(), run.box.upper.z()}},
@@ -120,12 +118,12 @@ json run_json(const Run& run) {
                    {"oy", c->origin_y},
                    {"w", c->width},
                    {"h", c->height}};
-  for (std::size_t m = 0; m < run.show.moments.size(); ++m) {
-    Snapshot moment = run.show.moments[m];
-    for (Vec3& r : moment.frame.position)  // a bead beyond a periodic boundary is shown inside the cell
+  for (std::size_t m = 0; m < run.show.snapshots.size(); ++m) {
+    Snapshot snapshot = run.show.snapshots[m];
+    for (Vec3& r : snapshot.frame.position)  // a bead beyond a periodic boundary is shown inside the cell
       if (r.allFinite()) r = run.box.wrap(r);
-    j["moments"].push_back(moment_json(moment, run.phases_per_cycle,
-                                       m < run.show.pictures.size() ? run.show.pictures[m] : std::string()));
+    j["moments"].push_back(snapshot_json(
+        snapshot, run.phases_per_cycle, m < run.show.pictures.size() ? run.show.pictures[m] : std::string()));
   }
   return j;
 }

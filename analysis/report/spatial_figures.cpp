@@ -6,19 +6,16 @@
 #include <array>
 #include <cmath>
 
-#include "analysis/neighbours/bond_order.hpp"
+#include "analysis/neighbours/bond_orientation.hpp"
 #include "analysis/neighbours/voronoi.hpp"
 #include "analysis/report/colours.hpp"
 #include "analysis/report/figure_style.hpp"
+#include "analysis/report/gnuplot_text.hpp"
 
 namespace twincell::analysis {
 namespace {
 
 using namespace colours;
-
-std::string cell_text(double v) {
-  return std::isfinite(v) ? fmt::format("{:.6g}", v) : "?";
-}
 
 /// Colour and name of a class of beads in the lattice figure.
 struct BeadStyle {
@@ -33,6 +30,119 @@ std::size_t style_of(double psi6, double angle) {
   if (!(psi6 > 0.9)) return 3;
   if (misorientation(angle, 0) <= 10) return 0;
   return misorientation(angle, 30) <= 10 ? 2 : 1;
+}
+
+/// The part of the bed that the lattice figure shows, sigma, and its scale in the drawing.
+struct LatticeView {
+  double left, right, low, high;
+  double scale;  ///< px per sigma
+};
+
+/// Margin at the left, right and bottom of the drawing, and height of its legend, px.
+constexpr double kLatticeMargin = 12, kLatticeLegend = 66;
+
+LatticeView lattice_view(const Frame& frame, const Box& box, int width_px) {
+  const double left = box.lower.x(), right = box.upper.x();
+  std::vector<double> heights;
+  double low = box.lower.z();
+  for (std::size_t i = 0; i < frame.position.size(); ++i)
+    if (frame.present(i) && frame.position[i].allFinite()) {
+      heights.push_back(frame.position[i].z());
+      low = std::min(low, frame.position[i].z() - 0.5);
+    }
+  std::sort(heights.begin(), heights.end());
+  // A single bead thrown high must not shrink the bed.
+  const double high =
+      heights.empty() ? low + 1
+                      : heights[static_cast<std::size_t>(0.99 * static_cast<double>(heights.size() - 1))] + 2;
+  return {left, right, low, high, (width_px - 2 * kLatticeMargin) / (right - left)};
+}
+
+/// Symbols of the beads, and the same as data.
+struct LatticeSymbols {
+  std::array<std::string, 4> circles;  ///< SVG, of each style
+  std::string marks;                   ///< SVG, of beads with five and seven neighbours
+  std::string data;
+};
+
+LatticeSymbols lattice_symbols(const Frame& frame, const TrajectoryInfo& info, const VoronoiCells& cells,
+                               const LatticeView& view) {
+  const BondOrder order = bond_order(cells.neighbours, cells.edge);
+  const auto& [left, right, low, high, scale] = view;
+  LatticeSymbols s;
+  s.data = "# x, z, radius, class (0 A, 1 between, 2 B, 3 disordered), coordination (0 at a surface)\n";
+  for (std::size_t i = 0; i < frame.position.size(); ++i) {
+    if (!frame.present(i) || !frame.position[i].allFinite() || frame.position[i].z() > high) continue;
+    const Vec3 r = info.box.wrap(frame.position[i]);
+    const double radius = radius_of(info.radius, i);
+    const std::size_t style = style_of(order.psi6[i], order.angle[i]);
+    const std::size_t coordination = cells.enclosed[i] != 0 ? cells.neighbours.count(i) : 0;
+    s.data += fmt::format("{:.5f} {:.5f} {:.4g} {} {}\n", r.x(), r.z(), radius, style, coordination);
+    const double x = kLatticeMargin + scale * (r.x() - left), y = scale * (high - r.z());
+    s.circles[style] +=
+        fmt::format("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.3g}\"/>\n", x, y, scale * radius);
+    const double half = 0.28 * scale;
+    if (coordination == 5)
+      s.marks += fmt::format("<path d=\"M{:.2f} {:.2f}l{:.2f} {:.2f}h{:.2f}z\" fill=\"{}\"/>\n", x, y - half,
+                             half, 2 * half, -2 * half, kVermilion);
+    else if (coordination == 7)
+      s.marks +=
+          fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"{}\"/>\n",
+                      x - half, y - half, 2 * half, 2 * half, kBlue);
+  }
+  return s;
+}
+
+/// SVG drawing with true circles, which gnuplot does not draw, and with the legend.
+std::string lattice_svg(const LatticeSymbols& symbols, const LatticeView& view, int width_px, int height_px) {
+  const auto& [left, right, low, high, scale] = view;
+  std::string svg = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 "
+      "{0} {1}\" font-family=\"Arial, sans-serif\" font-size=\"14\">\n<rect width=\"{0}\" height=\"{1}\" "
+      "fill=\"white\"/>\n",
+      width_px, height_px);
+  for (std::size_t s = 0; s < symbols.circles.size(); ++s)
+    svg += fmt::format("<g fill=\"{}\" stroke=\"#555555\" stroke-width=\"0.6\">\n{}</g>\n",
+                       kLattice[s].colour, symbols.circles[s]);
+  svg += fmt::format("<g stroke=\"#222222\" stroke-width=\"0.6\">\n{}</g>\n", symbols.marks);
+  const double floor = scale * (high - low);
+  svg += fmt::format(
+      "<path d=\"M{0:.1f} 0V{1:.1f}H{2:.1f}V0\" fill=\"none\" stroke=\"#222222\" stroke-width=\"2\"/>\n",
+      kLatticeMargin, floor + 1, kLatticeMargin + scale * (right - left));
+  for (std::size_t s = 0; s < kLattice.size(); ++s)
+    svg += fmt::format(
+        "<circle cx=\"{0:.1f}\" cy=\"{1:.1f}\" r=\"7\" fill=\"{2}\" stroke=\"#555555\"/><text x=\"{3:.1f}\" "
+        "y=\"{4:.1f}\">{5}</text>\n",
+        20 + 265.0 * static_cast<double>(s % 2), floor + 22 + 20 * static_cast<double>(s / 2),
+        kLattice[s].colour, 33 + 265.0 * static_cast<double>(s % 2),
+        floor + 27 + 20 * static_cast<double>(s / 2), kLattice[s].name);
+  svg += fmt::format(
+      "<path d=\"M484 {0:.1f}l6 12h-12z\" fill=\"{2}\"/><text x=\"496\" y=\"{1:.1f}\">5</text>"
+      "<rect x=\"508\" y=\"{0:.1f}\" width=\"11\" height=\"11\" fill=\"{3}\"/><text x=\"524\" "
+      "y=\"{1:.1f}\">7</text>\n</svg>\n",
+      floor + 36, floor + 47, kVermilion, kBlue);
+  return svg;
+}
+
+/// gnuplot script for the other formats. \param name of the file of the data, without its ending
+std::string lattice_plot(const LatticeView& view, const std::string& name) {
+  const auto& [left, right, low, high, scale] = view;
+  std::string plot = fmt::format(
+      "set size ratio -1\nunset tics\nunset grid\nunset border\nset xrange [{0}:{1}]\nset yrange [{2}:{3}]\n"
+      "set key outside below center maxrows 3 samplen 1 Left reverse\n"
+      "set arrow 1 from {0},{2} to {0},{3} nohead lw 2\nset arrow 2 from {1},{2} to {1},{3} nohead lw 2\n"
+      "set arrow 3 from {0},{2} to {1},{2} nohead lw 2\nplot ",
+      left, right, low, high);
+  for (std::size_t s = 0; s < kLattice.size(); ++s)
+    plot += fmt::format(
+        "'{0}.dat' using ($4=={1}?$1:NaN):2:3 with circles fs solid border lc rgb '#555555' lw 0.5 fc rgb "
+        "'{2}' notitle, keyentry with points pt 7 ps 1.4 lc rgb '{2}' title '{3}', ",
+        name, s, kLattice[s].colour, kLattice[s].name);
+  plot += fmt::format(
+      "'{0}.dat' using 1:($5==5?$2:NaN) with points pt 9 ps 1 lc rgb '{1}' title '5 neighbours', '{0}.dat' "
+      "using 1:($5==7?$2:NaN) with points pt 5 ps 0.8 lc rgb '{2}' title '7 neighbours'\n",
+      name, kVermilion, kBlue);
+  return plot;
 }
 
 }  // namespace
@@ -90,15 +200,15 @@ Figure profiles_figure(const std::vector<Result>& results) {
   };
   const auto column = [&](const char* name, std::size_t k) {
     const auto r = find(name);
-    return r != results.end() ? cell_text(r->values[k]) : std::string("?");
+    return r != results.end() ? gnuplot_number(r->values[k]) : std::string("?");
   };
   f.data = "# z (sigma), packing fraction, T_z, T_x (m g sigma)\n";
   for (std::size_t k = 0; k < z.values.size(); ++k)
     f.data +=
         fmt::format("{} {} {} {}\n", z.values[k], column("phi_z", k), column("T_z_z", k), column("T_x_z", k));
-  figure_style::Axis height{.label = "z/σ"}, packing{.label = "packing fraction", .low = 0},
+  figure_style::PlotAxis height{.label = "z/σ"}, packing{.label = "packing fraction", .low = 0},
       temperature{.label = "temperature/(m g σ)", .low = 0};
-  const auto show = [&](figure_style::Axis& axis, const char* name) {
+  const auto show = [&](figure_style::PlotAxis& axis, const char* name) {
     if (const auto r = find(name); r != results.end())
       for (const double v : r->values) axis.show(v);
   };
@@ -132,10 +242,10 @@ Figure defect_evolution_figure(const std::vector<Result>& results) {
   f.height = 340;
   const Result& series = find_result(results, "defect_fraction_j");
   f.data = fmt::format("# {}, share of enclosed beads that do not have 6 neighbours\n", series.n_of);
-  figure_style::Axis time{.label = series.n_of + " since the first analysed"},
+  figure_style::PlotAxis time{.label = series.n_of + " since the first analysed"},
       share{.label = "share of beads without 6 neighbours", .low = 0};
   for (std::size_t j = 0; j < series.values.size(); ++j) {
-    f.data += fmt::format("{} {}\n", j, cell_text(series.values[j]));
+    f.data += fmt::format("{} {}\n", j, gnuplot_number(series.values[j]));
     time.show(static_cast<double>(j));
     share.show(series.values[j]);
   }
@@ -149,92 +259,14 @@ Figure defect_evolution_figure(const std::vector<Result>& results) {
 
 Figure lattice_figure(const Frame& frame, const TrajectoryInfo& info, const AnalysisOptions& options) {
   const VoronoiCells cells = voronoi_cells(frame, info.box, options.cell_radius);
-  const BondOrder order = bond_order(cells.neighbours, cells.edge);
-  const double left = info.box.lower.x(), right = info.box.upper.x();
-  std::vector<double> heights;
-  double low = info.box.lower.z();
-  for (std::size_t i = 0; i < frame.position.size(); ++i)
-    if (frame.present(i) && frame.position[i].allFinite()) {
-      heights.push_back(frame.position[i].z());
-      low = std::min(low, frame.position[i].z() - 0.5);
-    }
-  std::sort(heights.begin(), heights.end());
-  // A single bead thrown high must not shrink the bed.
-  const double high =
-      heights.empty() ? low + 1
-                      : heights[static_cast<std::size_t>(0.99 * static_cast<double>(heights.size() - 1))] + 2;
-
-  // Data and symbols of every bead.
   Figure f{.name = "lattice", .title = "Lattice and defects"};
-  constexpr double kMargin = 12, kLegend = 66;
-  const double scale = (f.width - 2 * kMargin) / (right - left);
-  f.height = static_cast<int>(std::ceil(scale * (high - low) + kMargin + kLegend));
-  std::array<std::string, 4> circles;
-  std::string marks,
-      data = "# x, z, radius, class (0 A, 1 between, 2 B, 3 disordered), coordination (0 at a surface)\n";
-  for (std::size_t i = 0; i < frame.position.size(); ++i) {
-    if (!frame.present(i) || !frame.position[i].allFinite() || frame.position[i].z() > high) continue;
-    const Vec3 r = info.box.wrap(frame.position[i]);
-    const double radius = radius_of(info.radius, i);
-    const std::size_t style = style_of(order.psi6[i], order.angle[i]);
-    const std::size_t coordination = cells.enclosed[i] != 0 ? cells.neighbours.count(i) : 0;
-    data += fmt::format("{:.5f} {:.5f} {:.4g} {} {}\n", r.x(), r.z(), radius, style, coordination);
-    const double x = kMargin + scale * (r.x() - left), y = scale * (high - r.z());
-    circles[style] +=
-        fmt::format("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.3g}\"/>\n", x, y, scale * radius);
-    const double s = 0.28 * scale;
-    if (coordination == 5)
-      marks += fmt::format("<path d=\"M{:.2f} {:.2f}l{:.2f} {:.2f}h{:.2f}z\" fill=\"{}\"/>\n", x, y - s, s,
-                           2 * s, -2 * s, kVermilion);
-    else if (coordination == 7)
-      marks +=
-          fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"{}\"/>\n",
-                      x - s, y - s, 2 * s, 2 * s, kBlue);
-  }
-  f.data = data;
-  // SVG drawing with true circles, which gnuplot does not draw, and with the legend.
-  std::string svg = fmt::format(
-      "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 "
-      "{0} {1}\" font-family=\"Arial, sans-serif\" font-size=\"14\">\n<rect width=\"{0}\" height=\"{1}\" "
-      "fill=\"white\"/>\n",
-      f.width, f.height);
-  for (std::size_t s = 0; s < circles.size(); ++s)
-    svg += fmt::format("<g fill=\"{}\" stroke=\"#555555\" stroke-width=\"0.6\">\n{}</g>\n",
-                       kLattice[s].colour, circles[s]);
-  svg += fmt::format("<g stroke=\"#222222\" stroke-width=\"0.6\">\n{}</g>\n", marks);
-  const double floor = scale * (high - low);
-  svg += fmt::format(
-      "<path d=\"M{0:.1f} 0V{1:.1f}H{2:.1f}V0\" fill=\"none\" stroke=\"#222222\" stroke-width=\"2\"/>\n",
-      kMargin, floor + 1, kMargin + scale * (right - left));
-  for (std::size_t s = 0; s < kLattice.size(); ++s)
-    svg += fmt::format(
-        "<circle cx=\"{0:.1f}\" cy=\"{1:.1f}\" r=\"7\" fill=\"{2}\" stroke=\"#555555\"/><text x=\"{3:.1f}\" "
-        "y=\"{4:.1f}\">{5}</text>\n",
-        20 + 265.0 * static_cast<double>(s % 2), floor + 22 + 20 * static_cast<double>(s / 2),
-        kLattice[s].colour, 33 + 265.0 * static_cast<double>(s % 2),
-        floor + 27 + 20 * static_cast<double>(s / 2), kLattice[s].name);
-  svg += fmt::format(
-      "<path d=\"M484 {0:.1f}l6 12h-12z\" fill=\"{2}\"/><text x=\"496\" y=\"{1:.1f}\">5</text>"
-      "<rect x=\"508\" y=\"{0:.1f}\" width=\"11\" height=\"11\" fill=\"{3}\"/><text x=\"524\" "
-      "y=\"{1:.1f}\">7</text>\n</svg>\n",
-      floor + 36, floor + 47, kVermilion, kBlue);
-  f.svg = svg;
-  // gnuplot script for the other formats.
-  f.plot = fmt::format(
-      "set size ratio -1\nunset tics\nunset grid\nunset border\nset xrange [{0}:{1}]\nset yrange [{2}:{3}]\n"
-      "set key outside below center maxrows 3 samplen 1 Left reverse\n"
-      "set arrow 1 from {0},{2} to {0},{3} nohead lw 2\nset arrow 2 from {1},{2} to {1},{3} nohead lw 2\n"
-      "set arrow 3 from {0},{2} to {1},{2} nohead lw 2\nplot ",
-      left, right, low, high);
-  for (std::size_t s = 0; s < kLattice.size(); ++s)
-    f.plot += fmt::format(
-        "'{0}.dat' using ($4=={1}?$1:NaN):2:3 with circles fs solid border lc rgb '#555555' lw 0.5 fc rgb "
-        "'{2}' notitle, keyentry with points pt 7 ps 1.4 lc rgb '{2}' title '{3}', ",
-        f.name, s, kLattice[s].colour, kLattice[s].name);
-  f.plot += fmt::format(
-      "'{0}.dat' using 1:($5==5?$2:NaN) with points pt 9 ps 1 lc rgb '{1}' title '5 neighbours', '{0}.dat' "
-      "using 1:($5==7?$2:NaN) with points pt 5 ps 0.8 lc rgb '{2}' title '7 neighbours'\n",
-      f.name, kVermilion, kBlue);
+  const LatticeView view = lattice_view(frame, info.box, f.width);
+  f.height =
+      static_cast<int>(std::ceil(view.scale * (view.high - view.low) + kLatticeMargin + kLatticeLegend));
+  const LatticeSymbols symbols = lattice_symbols(frame, info, cells, view);
+  f.data = symbols.data;
+  f.svg = lattice_svg(symbols, view, f.width, f.height);
+  f.plot = lattice_plot(view, f.name);
   f.caption =
       "The last frame. Orientation A: close-packed rows within 10 degrees of the floor; B: of the side "
       "walls. Triangles and squares: five and seven neighbours by Voronoi cells; beads at walls, free "

@@ -47,10 +47,6 @@ Abscissa abscissa_of(const std::vector<Window>& windows) {
   return a;
 }
 
-std::string number_text(double v) {
-  return std::isfinite(v) ? fmt::format("{:.6g}", v) : "?";
-}
-
 Figure figure_of(const std::string& name, const std::vector<Window>& windows, const Abscissa& abscissa) {
   Figure f{.name = "windows_" + name, .title = name + " in windows"};
   f.height = 400;
@@ -58,7 +54,7 @@ Figure figure_of(const std::string& name, const std::vector<Window>& windows, co
   std::string unit = first.unit.empty() || first.unit == "1" ? "" : "/" + first.unit;
   if (const std::size_t sigma = unit.find("sigma"); sigma != std::string::npos)
     unit = unit.substr(0, sigma) + "σ" + unit.substr(sigma + 5);
-  figure_style::Axis x{.label = abscissa.label}, y{.label = gnuplot_symbol(name) + unit};
+  figure_style::PlotAxis x{.label = abscissa.label}, y{.label = gnuplot_symbol(name) + unit};
   bool both[2] = {false, false};
   for (const bool falls : {false, true}) {
     f.data += fmt::format("# {}: {}, {}, low, high of its interval\n", falls ? "falling" : "rising",
@@ -69,8 +65,8 @@ Figure figure_of(const std::string& name, const std::vector<Window>& windows, co
       if (!std::isfinite(r.value())) continue;
       const double low = r.interval ? r.interval->low : r.value(),
                    high = r.interval ? r.interval->high : r.value();
-      f.data += fmt::format("{:.6g} {} {} {}\n", abscissa.places[k].at, number_text(r.value()),
-                            number_text(low), number_text(high));
+      f.data += fmt::format("{:.6g} {} {} {}\n", abscissa.places[k].at, gnuplot_number(r.value()),
+                            gnuplot_number(low), gnuplot_number(high));
       x.show(abscissa.places[k].at);
       for (const double v : {r.value(), low, high}) y.show(v);
       both[falls ? 1 : 0] = true;

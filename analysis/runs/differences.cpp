@@ -8,9 +8,9 @@
 #include <map>
 
 #include "analysis/motion/tracers.hpp"
-#include "analysis/neighbours/bond_order.hpp"
+#include "analysis/neighbours/bond_orientation.hpp"
 #include "analysis/statistics/statistics.hpp"
-#include "core/counted.hpp"
+#include "core/plural.hpp"
 
 namespace twincell::analysis {
 namespace {
@@ -47,12 +47,6 @@ std::optional<double> in_quadrature(std::initializer_list<std::optional<double>>
       any = true;
     }
   return any ? std::optional(std::sqrt(sum)) : std::nullopt;
-}
-
-double mean(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) sum += v;
-  return sum / static_cast<double>(values.size());
 }
 
 double deviation(const std::vector<double>& values) {
@@ -349,9 +343,9 @@ std::string real_differences_text(const std::vector<Difference>& differences,
   }
   if (without_error > 0)
     rows += fmt::format("no error is known of {}, so that nothing follows from {}\n",
-                        counted(without_error, "other number"), without_error == 1 ? "it" : "them");
+                        plural(without_error, "other number"), without_error == 1 ? "it" : "them");
   return rows + fmt::format("{} {} within {} errors (differences.csv in the report).\n",
-                            counted(others, rows.empty() ? "number" : "other number"),
+                            plural(others, rows.empty() ? "number" : "other number"),
                             others == 1 ? "agrees" : "agree", others == 1 ? "its" : "their");
 }
 

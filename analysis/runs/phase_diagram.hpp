@@ -10,7 +10,7 @@
 #include "analysis/motion/bed_phase.hpp"
 #include "analysis/motion/snapshots.hpp"
 #include "analysis/observable/observable.hpp"
-#include "analysis/order/order.hpp"
+#include "analysis/order/bond_order.hpp"
 #include "core/choice.hpp"
 
 namespace twincell::analysis {
@@ -31,7 +31,7 @@ struct PictureFrame {
 
 /// Data for displaying a run. Filled on request, because frames are large.
 struct Show {
-  std::vector<Snapshot> moments;
+  std::vector<Snapshot> snapshots;
   std::vector<std::string>
       pictures;  ///< PNG of each snapshot, empty string if not kept; or no entries at all
   std::optional<PictureFrame> camera;
@@ -96,6 +96,8 @@ inline constexpr std::array kMatchVerdicts = {
     Choice<MatchVerdict>{MatchVerdict::only_simulation, "only simulation", "no experiment has this Gamma"},
     Choice<MatchVerdict>{MatchVerdict::undetermined, "undetermined",
                          "the runs of one side disagree or have no phase"}};
+/// Compares the common phase of the experiments of a match with that of its simulations; a side without runs
+/// is named instead. \param runs the runs to which the indices of the match refer
 MatchVerdict verdict(const std::vector<Run>& runs, const Match& match);
 /// The word of the verdict on a match.
 std::string verdict_word(const std::vector<Run>& runs, const Match& match);

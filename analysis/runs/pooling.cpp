@@ -14,7 +14,7 @@
 #include <set>
 #include <string_view>
 
-#include "analysis/neighbours/bond_order.hpp"
+#include "analysis/neighbours/bond_orientation.hpp"
 #include "analysis/order/orientation.hpp"
 #include "analysis/runs/bed_keys.hpp"
 #include "analysis/runs/phase_diagram.hpp"
@@ -68,12 +68,6 @@ Values values_of(const std::vector<const Result*>& runs, Pooling rule) {
     v.errors.push_back(error);
   }
   return v;
-}
-
-double mean(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) sum += v;
-  return sum / static_cast<double>(values.size());
 }
 
 /// Interval from the scatter between runs, widened to the uncertainties of the single runs. Absent if the
@@ -191,13 +185,13 @@ Result pooled_profile(const std::vector<const Result*>& of_runs, const std::vect
   const std::vector<const Result*> with = without_null(of_runs);
   const Result& first = *with.front();
   const NamedResult named = named_result(first.name);
-  constexpr double kSame = 1e-6;  // sigma; slabs are about one apart
+  constexpr double kSameHeight = 1e-6;  // sigma; slabs are about one apart
   struct Element {
     double abscissa;
     std::vector<double> values;
   };
   std::map<std::int64_t, Element> elements;
-  const auto key = [](double z) { return std::llround(z / kSame); };
+  const auto key = [](double z) { return std::llround(z / kSameHeight); };
   for (const Result* a : without_null(along))
     for (const double z : a->values) elements.try_emplace(key(z), Element{z, {}});
   for (std::size_t r = 0; r < of_runs.size(); ++r) {
@@ -326,9 +320,9 @@ std::optional<Result> pooled_by_others(const std::vector<std::vector<Result>>& r
 
 /// Whether a number may be equal in two runs by chance: a count, or a ratio of small counts.
 bool may_recur(double value) {
-  constexpr int kLargest = 1000;
+  constexpr int kMaxDenominator = 1000;
   if (!std::isfinite(value)) return true;
-  for (int q = 1; q <= kLargest; ++q)
+  for (int q = 1; q <= kMaxDenominator; ++q)
     if (std::abs(value * q - std::round(value * q)) <= 1e-11 * std::abs(value * q)) return true;
   return false;
 }

@@ -8,9 +8,9 @@
 
 #include "analysis/motion/centre_of_mass.hpp"
 #include "core/cancellation.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/escape.hpp"
+#include "core/plural.hpp"
 
 namespace twincell::analysis {
 
@@ -117,7 +117,7 @@ std::vector<Window> analyze_windows(const TrajectorySource& trajectory, const An
   if (left_out != nullptr) *left_out = no_window;
   if (places.empty())
     throw ConfigError(where,
-                      fmt::format("no window of {} fits into the trajectory", counted(cycles, "cycle")));
+                      fmt::format("no window of {} fits into the trajectory", plural(cycles, "cycle")));
   AnalysisOptions one = options;
   one.discard_cycles = 0;
   one.cycles = cycles;

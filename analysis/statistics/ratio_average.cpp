@@ -6,7 +6,7 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr std::size_t kMostMeans = 4096;
+constexpr std::size_t kMaxMeans = 4096;
 
 }  // namespace
 
@@ -20,7 +20,7 @@ void RatioAverage::add(double a, double b) {
   coarse_.push_back(open_);
   open_ = {0, 0};
   open_count_ = 0;
-  if (coarse_.size() < kMostMeans) return;
+  if (coarse_.size() < kMaxMeans) return;
   for (std::size_t k = 0; 2 * k + 1 < coarse_.size(); ++k)
     coarse_[k] = {coarse_[2 * k].first + coarse_[2 * k + 1].first,
                   coarse_[2 * k].second + coarse_[2 * k + 1].second};

@@ -36,8 +36,8 @@ constexpr double kLongSeries = 100;
 constexpr double kDegreesOfPrewhitening = 1;
 /// Least length of a series with an interval, in correlation times. Shorter ones cannot be told from a
 /// random walk, which has no mean.
-constexpr double kLeastTimes = 8;
-constexpr std::size_t kLeastValues = 4;
+constexpr double kMinTimes = 8;
+constexpr std::size_t kMinValues = 4;
 
 /// Minimum number of items for a bootstrap. Below it the interval is Student's t, because resamples of so few
 /// items have too little variety. For normally distributed values Student's t has 95 % coverage at every
@@ -46,7 +46,7 @@ constexpr std::size_t kItemsToResample = 6;
 /// Largest quantile of the studentised bootstrap, in those of Student's t. Where all items but one nearly
 /// agree, a resample without this one has almost no scatter of its own, and its t is without bound: s_c of 7
 /// tracers, of which one had moved, was 0.3 [0, 194]. Skewed items that are not degenerate stay below.
-constexpr double kMostStudents = 4;
+constexpr double kMaxStudents = 4;
 
 double mean_of(const std::vector<double>& x) {
   return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
@@ -60,6 +60,12 @@ double normal_quantile(double p) {
 }
 
 }  // namespace
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
 
 double student_t_95(double degrees) {
   if (degrees <= 0) return std::numeric_limits<double>::infinity();
@@ -118,7 +124,7 @@ double SeriesAverage::in_values(double coarse) const {
 }
 
 bool SeriesAverage::all_the_same() const {
-  return n_ >= kLeastValues && !(variance() > kRounding * mean_ * mean_);
+  return n_ >= kMinValues && !(variance() > kRounding * mean_ * mean_);
 }
 
 std::optional<Autoregression> SeriesAverage::process() const {
@@ -131,16 +137,16 @@ std::optional<Autoregression> SeriesAverage::process() const {
 }
 
 bool SeriesAverage::has_no_scatter() const {
-  return n_ >= kLeastValues && (all_the_same() || !process());
+  return n_ >= kMinValues && (all_the_same() || !process());
 }
 
 bool SeriesAverage::is_long_enough(const Autoregression& fit) const {
-  return static_cast<double>(coarse_.size()) >= kLeastTimes * fit.correlation_time;
+  return static_cast<double>(coarse_.size()) >= kMinTimes * fit.correlation_time;
 }
 
 std::string SeriesAverage::why_no_interval(const std::string& of_what) const {
-  if (n_ < kLeastValues)
-    return fmt::format("too few {} for an error: {} of at least {}", of_what, n_, kLeastValues);
+  if (n_ < kMinValues)
+    return fmt::format("too few {} for an error: {} of at least {}", of_what, n_, kMinValues);
   if (all_the_same()) return fmt::format("the same in all {} {}", n_, of_what);
   const auto fit = process();
   if (!fit) return fmt::format("{} {} repeat with a period: they do not scatter", n_, of_what);
@@ -150,7 +156,7 @@ std::string SeriesAverage::why_no_interval(const std::string& of_what) const {
              : fmt::format(
                    "{} {} with a correlation time of {:.3g} are too few for an error: {:g} times the "
                    "correlation time at least",
-                   n_, of_what, in_values(fit->correlation_time), kLeastTimes);
+                   n_, of_what, in_values(fit->correlation_time), kMinTimes);
 }
 
 /// Standard error of the mean. The spectrum of the innovations at zero frequency is the mean over the lowest
@@ -187,7 +193,7 @@ double SeriesAverage::lift(double tau) const {
 }
 
 std::optional<Interval> SeriesAverage::interval(const std::string& of_what) const {
-  if (n_ < kLeastValues || all_the_same()) return std::nullopt;
+  if (n_ < kMinValues || all_the_same()) return std::nullopt;
   const auto fit = process();
   if (!fit || !is_long_enough(*fit)) return std::nullopt;
   const bool is_long = static_cast<double>(coarse_.size()) >= kLongSeries * fit->correlation_time;
@@ -305,7 +311,7 @@ std::optional<Interval> mean_interval(const std::vector<double>& items, const st
   const double wide = error * std::sqrt(static_cast<double>(n) / static_cast<double>(n - 2));
   if (t.size() < 40) return std::nullopt;
   std::sort(t.begin(), t.end());
-  const double most = kMostStudents * student_t_95(static_cast<double>(n - 1));
+  const double most = kMaxStudents * student_t_95(static_cast<double>(n - 1));
   const auto at = [&](double share) {
     const double quantile =
         t[static_cast<std::size_t>(std::lround(share * static_cast<double>(t.size() - 1)))];

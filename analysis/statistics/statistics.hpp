@@ -32,6 +32,9 @@ inline constexpr double kStandardErrors = 1.96;
   return (interval.high - interval.low) / (2 * kStandardErrors);
 }
 
+/// Arithmetic mean, sum x_i/n. NaN for no values.
+[[nodiscard]] double mean(const std::vector<double>& values);
+
 /// Two-sided 95 % quantile of Student's t: P(|t| < value) = 0.95 for `degrees` of freedom >= 1 (12.706 for 1,
 /// 1.960 in the limit). Infinite for 0.
 double student_t_95(double degrees);

@@ -27,6 +27,7 @@ struct CalibrationTime {
   double beads_s = 0;  ///< locating the beads of up to twelve frames
 };
 
+/// Result of the measurement.
 struct CalibrationCost {
   int width_px = 0, height_px = 0;  ///< of a frame
   std::vector<CalibrationPrecision> numbers;

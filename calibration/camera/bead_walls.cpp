@@ -16,8 +16,8 @@
 namespace twincell::calibration {
 namespace {
 
-constexpr double kSlice = 0.5;       // sigma
-constexpr std::size_t kFewest = 20;  // beads that a slice needs
+constexpr double kSliceHeight = 0.5;  // sigma
+constexpr std::size_t kMinBeadsOfSlice = 20;
 
 /// Height and outermost surface position of each slice. \param sign -1 for the left wall, +1 for the right
 /// wall
@@ -25,7 +25,7 @@ std::vector<DataPoint> outermost_places(const std::map<long, std::vector<std::pa
                                         double sign) {
   std::vector<DataPoint> points;
   for (auto [slice, beads] : slices) {
-    if (beads.size() < kFewest) continue;
+    if (beads.size() < kMinBeadsOfSlice) continue;
     std::sort(beads.begin(), beads.end(),
               [&](const auto& a, const auto& b) { return sign * a.second > sign * b.second; });
     const std::size_t n = std::max<std::size_t>(3, beads.size() / 100);
@@ -55,7 +55,7 @@ BeadWalls walls_from_beads(const TrajectorySource& trajectory) {
       const double r = radius_of(info.radius, i), x = frame.position[i].x() - aside,
                    z = frame.position[i].z() - plate;
       auto& slices = x < middle ? left : right;
-      slices[std::lround(std::floor(z / kSlice))].emplace_back(z, x < middle ? x - r : x + r);
+      slices[std::lround(std::floor(z / kSliceHeight))].emplace_back(z, x < middle ? x - r : x + r);
     }
   }
   const std::vector<DataPoint> l = outermost_places(left, -1), r = outermost_places(right, 1);
@@ -64,21 +64,22 @@ BeadWalls walls_from_beads(const TrajectorySource& trajectory) {
         {.file = trajectory.name(), .key = {}},
         fmt::format("has enough beads at {} heights of the left and {} of the right wall; 3 are needed.",
                     l.size(), r.size()));
-  const CurveFit a = fit_curve(law_named("line"), l), b = fit_curve(law_named("line"), r);
+  // x = a + b z
+  const CurveFit left_line = fit_curve(law_named("line"), l), right_line = fit_curve(law_named("line"), r);
   const auto degrees = [](double slope, double error) {
     return std::pair{std::atan(slope) * 180 / std::numbers::pi,
                      error / (1 + slope * slope) * 180 / std::numbers::pi};
   };
   BeadWalls w;
-  w.x_left = a.fit.values[0];
-  w.x_left_error = a.fit.standard_errors.empty() ? std::nan("") : a.fit.standard_errors[0];
-  w.x_right_error = b.fit.standard_errors.empty() ? std::nan("") : b.fit.standard_errors[0];
-  w.width = b.fit.values[0] - a.fit.values[0];
+  w.x_left = left_line.fit.values[0];
+  w.x_left_error = left_line.fit.standard_error("a");
+  w.x_right_error = right_line.fit.standard_error("a");
+  w.width = right_line.fit.values[0] - left_line.fit.values[0];
   w.width_error = std::hypot(w.x_left_error, w.x_right_error);
   std::tie(w.tilt_left, w.tilt_left_error) =
-      degrees(-a.fit.values[1], a.fit.standard_errors.empty() ? std::nan("") : a.fit.standard_errors[1]);
+      degrees(-left_line.fit.values[1], left_line.fit.standard_error("b"));
   std::tie(w.tilt_right, w.tilt_right_error) =
-      degrees(b.fit.values[1], b.fit.standard_errors.empty() ? std::nan("") : b.fit.standard_errors[1]);
+      degrees(right_line.fit.values[1], right_line.fit.standard_error("b"));
   w.rows = std::min(l.size(), r.size());
   return w;
 }

@@ -207,7 +207,7 @@ class GeometryFit {
     add_systematic_errors();
   }
 
-  /// The edges without the walls that are no lines; absent if all are.
+  /// The edges without the walls that are not straight lines; absent if all are.
   [[nodiscard]] std::optional<StackEdges> without_false_walls() const {
     const bool false_left = has_left_ && !is_line("x_left"), false_right = has_right_ && !is_line("x_right");
     if (!false_left && !false_right) return std::nullopt;
@@ -283,7 +283,7 @@ double mean_x(const std::vector<WallRow>& wall) {
 }
 
 void GeometryFit::choose_points() {
-  constexpr std::size_t kFewestRows = 8;  // of a wall
+  constexpr std::size_t kMinRows = 8;  // of a wall
   const std::size_t stride = std::max<std::size_t>(1, edges_.plate.size() / kPlateFrames);
   const std::optional<double> slope = plate_slope(edges_.plate, stride);
   has_plate_ = slope.has_value();
@@ -292,10 +292,10 @@ void GeometryFit::choose_points() {
   all_.left = rows_of_wall(edges_.left, 0);
   all_.right = rows_of_wall(edges_.right, 1);
   put_floors(std::atan(slope_) / kDegree, 0);
-  has_left_ = all_.left.size() >= kFewestRows;
-  has_right_ = all_.right.size() >= kFewestRows;
-  // With the wrong polarity the edges of beads are found, from the other side: what is left of the left wall
-  // is no right wall.
+  has_left_ = all_.left.size() >= kMinRows;
+  has_right_ = all_.right.size() >= kMinRows;
+  // With the wrong polarity the edges of beads are found, from the other side: a right wall left of the left
+  // wall is an error.
   if (has_left_ && has_right_ && mean_x(all_.right) <= mean_x(all_.left)) has_left_ = has_right_ = false;
   if (!has_left_) all_.left.clear();
   if (!has_right_) all_.right.clear();

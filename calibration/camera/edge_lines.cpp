@@ -47,10 +47,10 @@ std::pair<double, std::size_t> outermost(const std::vector<double>& sorted, std:
 
 /// Outermost line that at least `share` of the points follow, by a scan over slopes within +-steepest.
 std::optional<EdgeLine> outermost_line(std::vector<AlongEdge> points, double steepest, double share) {
-  constexpr std::size_t kMost = 400;
-  if (points.size() > kMost) {
+  constexpr std::size_t kMaxPoints = 400;  // used in the scan
+  if (points.size() > kMaxPoints) {
     std::vector<AlongEdge> thinned;
-    for (std::size_t i = 0; i < kMost; ++i) thinned.push_back(points[i * points.size() / kMost]);
+    for (std::size_t i = 0; i < kMaxPoints; ++i) thinned.push_back(points[i * points.size() / kMaxPoints]);
     points = std::move(thinned);
   }
   const auto need =
@@ -83,11 +83,11 @@ AlongEdge along_of(const imaging::PixelPoint& p, int side) {
 }  // namespace
 
 std::vector<WallRow> rows_of_wall(const std::vector<std::vector<imaging::EdgePoint>>& frames, int side) {
-  constexpr double kSteepest = 0.25;
+  constexpr double kMaxSlope = 0.25;  // of a wall, px per px of its height
   std::vector<AlongEdge> all;
   for (const auto& frame : frames)
     for (const imaging::EdgePoint& p : frame) all.push_back(along_of(p.at, side));
-  const auto line = outermost_line(all, kSteepest, 0.05);
+  const auto line = outermost_line(all, kMaxSlope, 0.05);
   std::vector<WallRow> rows;
   if (!line) return rows;
   // Distortion curves the wall, so a parabola is fitted in a window that narrows with each round.
@@ -139,12 +139,13 @@ std::vector<WallRow> rows_of_wall(const std::vector<std::vector<imaging::EdgePoi
 
 std::optional<double> plate_slope(const std::vector<std::vector<imaging::EdgePoint>>& plate,
                                   std::size_t stride) {
-  constexpr double kSteepestPlate = 0.1, kShare = 0.03;
+  constexpr double kMaxSlope = 0.1;           // of the plate, px per px of its width
+  constexpr double kMinShareOfPoints = 0.03;  // that follow the line
   std::vector<double> slopes;
   for (std::size_t f = 0; f < plate.size(); f += stride) {
     std::vector<AlongEdge> points;
     for (const imaging::EdgePoint& p : plate[f]) points.push_back(along_of(p.at, 2));
-    if (const auto line = outermost_line(points, kSteepestPlate, kShare)) slopes.push_back(line->slope);
+    if (const auto line = outermost_line(points, kMaxSlope, kMinShareOfPoints)) slopes.push_back(line->slope);
   }
   if (slopes.empty()) return std::nullopt;
   return upper_median(slopes);

@@ -37,7 +37,7 @@ std::optional<double> plate_slope(const std::vector<std::vector<imaging::EdgePoi
                                   std::size_t stride);
 
 /// Points of the plate's edge in one frame: those within `window` of the outermost line with the given slope,
-/// px; none if 3 % of the points share no such line.
+/// px; none if no such line contains 3 % of the points.
 std::vector<imaging::PixelPoint> on_plate(const std::vector<imaging::EdgePoint>& frame, double slope,
                                           double window);
 

@@ -9,8 +9,8 @@ namespace twincell::calibration {
 
 analysis::Figure edge_map_figure(const CellGeometry& geometry) {
   analysis::Figure f{.name = "edges", .title = "Residuals of walls and plate", .width = 640, .height = 520};
-  constexpr std::size_t kMost = 4000;
-  const std::size_t stride = std::max<std::size_t>(1, geometry.residuals.size() / kMost);
+  constexpr std::size_t kDrawnPoints = 4000;  // approximate; fewer than twice as many are drawn
+  const std::size_t stride = std::max<std::size_t>(1, geometry.residuals.size() / kDrawnPoints);
   f.data = "# x, y, residual, px\n";
   double squares = 0;
   for (std::size_t i = 0; i < geometry.residuals.size(); i += stride) {
@@ -18,9 +18,9 @@ analysis::Figure edge_map_figure(const CellGeometry& geometry) {
     squares += r.distance_px * r.distance_px * static_cast<double>(stride);
     f.data += fmt::format("{:.2f} {:.2f} {:.4f}\n", r.at.x_px, r.at.y_px, r.distance_px);
   }
-  constexpr double kLeast_px = 0.01;
+  constexpr double kMinColourRange_px = 0.01;
   const double reach = std::max(
-      kLeast_px,
+      kMinColourRange_px,
       3 * std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, geometry.residuals.size()))));
   f.plot = fmt::format(
       "set size ratio {:.5f}\nset xrange [0:{}]\nset yrange [{}:0]\nset xlabel 'x, px'\nset ylabel 'y, px'\n"

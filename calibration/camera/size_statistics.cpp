@@ -65,25 +65,25 @@ struct PairsInBin {
 /// Centre distance of touching beads, from all near pairs. In a moving bed most near pairs do not quite
 /// touch. The mean around the mode, which was tried first, was too large by eight of its standard errors.
 std::optional<Estimate> touching(const std::vector<double>& pairs, double diameter, std::size_t frames) {
-  constexpr std::size_t kFewestPairs = 20;
-  constexpr double kBin = 0.5, kBelow = 5,
-                   kAbove = 0.015;  // bin and lower limit in peak widths; upper limit in diameters
-  if (pairs.size() < kFewestPairs) return std::nullopt;
+  constexpr std::size_t kMinPairs = 20;
+  constexpr double kBinWidth = 0.5, kReach = 5;  // of the histogram from the mode; peak widths
+  constexpr double kMinReachAbove = 0.015;       // bead diameters
+  if (pairs.size() < kMinPairs) return std::nullopt;
   const double mode = half_sample_mode(pairs);
   std::vector<double> below;
   for (const double r : pairs)
     if (r < mode) below.push_back(mode - r);
-  if (below.size() < kFewestPairs / 2) return std::nullopt;
+  if (below.size() < kMinPairs / 2) return std::nullopt;
   // Distances below the mode contain no gaps, so only they give the noise.
   const double width = std::max(1e-4 * diameter, robust_spread(below));
-  const double low = mode - kBelow * width, high = mode + std::max(kBelow * width, kAbove * diameter),
-               bin = kBin * width;
+  const double low = mode - kReach * width, high = mode + std::max(kReach * width, kMinReachAbove * diameter),
+               bin = kBinWidth * width;
   std::vector<double> counts(static_cast<std::size_t>(std::ceil((high - low) / bin)));
   double n = 0;
   for (const double r : pairs)
     if (r > low && r < low + bin * static_cast<double>(counts.size()))
       ++counts[static_cast<std::size_t>((r - low) / bin)], ++n;
-  if (n < kFewestPairs) return std::nullopt;
+  if (n < kMinPairs) return std::nullopt;
   std::vector<double> p = {mode, std::log(width), std::sqrt(0.8 * n), std::sqrt(0.2 * n / (high - mode))};
   ceres::Problem problem;
   for (std::size_t k = 0; k < counts.size(); ++k)
@@ -94,7 +94,7 @@ std::optional<Estimate> touching(const std::vector<double>& pairs, double diamet
       solve(problem, p.data(), {"distance", "noise", "touching", "apart"}, Residuals::weighted);
   const double moved = std::abs(fit.values[0] - mode);
   // Without a peak of touching pairs the distance is not defined.
-  if (!fit.usable || !(moved < 3 * width) || !(fit.values[2] * fit.values[2] > kFewestPairs / 2.0))
+  if (!fit.usable || !(moved < 3 * width) || !(fit.values[2] * fit.values[2] > kMinPairs / 2.0))
     return std::nullopt;
   const double error = fit.standard_errors.empty() ? width / std::sqrt(n) : fit.standard_errors[0];
   // The same pairs recur in other frames, so frames do not add independent data.
@@ -134,13 +134,13 @@ void add_gradient(SizeStatistics& c, const BeadFrames& beads, double middle, dou
 
 /// Groups of rejected discs of another size that are less than a bead diameter apart.
 std::vector<SizedBead> objects_of(const std::vector<imaging::Detection>& dropped, double diameter) {
-  constexpr double kGood = 0.8;  // least score
+  constexpr double kMinScore = 0.8;  // Detection::score
   struct Group {
     double x = 0, y = 0, n = 0;
   };
   std::vector<Group> groups;
   for (const imaging::Detection& d : dropped) {
-    if (d.verdict != imaging::Verdict::wrong_radius || d.score < kGood || d.edge) continue;
+    if (d.verdict != imaging::Verdict::wrong_radius || d.score < kMinScore || d.edge) continue;
     const auto near = std::find_if(groups.begin(), groups.end(), [&](const Group& g) {
       return std::hypot(g.x / g.n - d.x, g.y / g.n - d.y) < diameter;
     });
@@ -230,7 +230,8 @@ BeadFrames beads_of(const TrajectorySource& trajectory, int most) {
 }
 
 std::string others_in_words(const BeadFrames& beads) {
-  constexpr double kMostFrames = 0.5, kMost = 0.1;
+  constexpr double kMinShareOfFrames = 0.5;  // that show such objects
+  constexpr double kMaxShareOfBeads = 0.1;   // objects per bead; more are a second size of beads
   std::size_t with = 0, first = 0;
   double all = 0, others = 0;
   std::vector<double> numbers;
@@ -241,8 +242,8 @@ std::string others_in_words(const BeadFrames& beads) {
     if (with++ == 0) first = f;
     numbers.push_back(static_cast<double>(beads.others[f].size()));
   }
-  if (with == 0 || static_cast<double>(with) < kMostFrames * static_cast<double>(beads.others.size()) ||
-      others > kMost * all)
+  if (with == 0 || static_cast<double>(with) < kMinShareOfFrames * static_cast<double>(beads.others.size()) ||
+      others > kMaxShareOfBeads * all)
     return {};
   const SizedBead& at = beads.others[first].front();
   return fmt::format(

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/counted.hpp"
+#include "core/plural.hpp"
 
 namespace twincell::calibration {
 
@@ -28,8 +28,8 @@ analysis::Figure size_statistics_figure(const SizeStatistics& census, double uni
       "solid 0.6 border\nset arrow from {:.6g}, graph 0 to {:.6g}, graph 1 nohead lw 2 lc rgb vermilion\n"
       "plot 'beads.dat' using 1:2 with boxes lc rgb blue notitle\n",
       px ? "px" : "σ", width, census.diameter.value * unit, census.diameter.value * unit);
-  f.caption = fmt::format("{} in {}; the line is the mean", counted(census.sizes, "disc"),
-                          counted(census.frames, "frame"));
+  f.caption = fmt::format("{} in {}; the line is the mean", plural(census.sizes, "disc"),
+                          plural(census.frames, "frame"));
   return f;
 }
 

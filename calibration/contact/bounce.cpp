@@ -11,14 +11,14 @@
 
 #include "calibration/fit/outliers.hpp"
 #include "calibration/fit/scattered_mean.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
+#include "core/plural.hpp"
 
 namespace twincell::calibration {
 namespace {
 
-constexpr std::size_t kFewestSamples = 6;  // of a flight
+constexpr std::size_t kMinSamples = 6;  // of a flight
 
 struct Flight {
   double begin = 0, end = 0;
@@ -73,10 +73,6 @@ struct InFlight {
   }
 };
 
-double median_of(std::vector<double> v) {
-  return upper_median(std::move(v));
-}
-
 /// Fit of z = c0 + c1 t - c2 t^2/2, t from `middle`, by least absolute residuals (iteratively reweighted),
 /// and the median absolute residual.
 struct Parabola {
@@ -101,7 +97,7 @@ Parabola least_absolute(const std::vector<const BounceSample*>& in, double middl
       r[i] = std::abs(out.c[0] + out.c[1] * t - 0.5 * out.c[2] * t * t - in[i]->height);
     }
   }
-  out.median_residual = median_of(r);
+  out.median_residual = upper_median(r);
   return out;
 }
 
@@ -123,9 +119,9 @@ double span_of(const std::vector<BounceSample>& s) {
 /// Simulated heights scatter by rounding only, which differs between the two halves of a flight: hence the
 /// lower limit.
 double noise_of(std::vector<double> residuals, const std::vector<BounceSample>& s) {
-  constexpr double kFinest = 1e-5;  // of the span of the heights
+  constexpr double kMinNoise = 1e-5;  // fraction of the span of the heights
   std::sort(residuals.begin(), residuals.end());
-  return std::max(residuals[residuals.size() / 3], kFinest * span_of(s));
+  return std::max(residuals[residuals.size() / 3], kMinNoise * span_of(s));
 }
 
 /// Robust standard deviation of residuals, at least 1e-12.
@@ -135,24 +131,26 @@ double scale_of(std::vector<double> r) {
 
 /// Scatter of neighbouring heights about a smooth curve, from third differences: impacts are too few to show.
 double scatter_of(const std::vector<BounceSample>& s) {
-  constexpr double kOfThird = 4.4721359549995796;  // sqrt(1 + 9 + 9 + 1), of independent errors of 1
+  // Error of a third difference of heights with independent errors of 1: sqrt(1 + 9 + 9 + 1).
+  constexpr double kThirdDifferenceError = 4.4721359549995796;
   std::vector<double> third;
   for (std::size_t i = 0; i + 3 < s.size(); ++i)
     third.push_back(s[i + 3].height - 3 * s[i + 2].height + 3 * s[i + 1].height - s[i].height);
-  return scale_of(std::move(third)) / kOfThird;
+  return scale_of(std::move(third)) / kThirdDifferenceError;
 }
 
 /// Times at which the height above the plate, after a median filter against single outliers, turns from
 /// falling to rising.
 std::vector<double> turning_points(const std::vector<BounceSample>& s, const PlateMotionAt& plate) {
-  constexpr std::size_t kSide = 3;
+  constexpr std::size_t kFilterReach = 3;  // samples on either side
   const std::size_t n = s.size();
   std::vector<double> h(n);
   for (std::size_t i = 0; i < n; ++i) {
     std::vector<double> near;
-    for (std::size_t k = i >= kSide ? i - kSide : 0; k <= std::min(n - 1, i + kSide); ++k)
+    for (std::size_t k = i >= kFilterReach ? i - kFilterReach : 0; k <= std::min(n - 1, i + kFilterReach);
+         ++k)
       near.push_back(s[k].height - (plate ? plate(s[k].time).height : 0));
-    h[i] = median_of(near);
+    h[i] = upper_median(near);
   }
   std::vector<double> sorted = h;
   std::sort(sorted.begin(), sorted.end());
@@ -189,7 +187,7 @@ std::vector<double> rough_impacts(const std::vector<BounceSample>& s, const Plat
   };
   std::vector<double> own;
   for (std::size_t i = 0; i + 1 < edges.size(); ++i)
-    if (between(s, edges[i], edges[i + 1]).size() >= kFewestSamples)
+    if (between(s, edges[i], edges[i + 1]).size() >= kMinSamples)
       own.push_back(residual(edges[i], edges[i + 1]));
   if (own.empty()) return {};
   const double noise = noise_of(std::move(own), s);
@@ -268,7 +266,7 @@ class SeriesFit {
   /// \throws InputError if the samples show fewer than two flights
   SeriesFit(std::vector<BounceSample> samples, const BounceOptions& options)
       : options_(options), samples_(sorted_samples(std::move(samples))) {
-    if (samples_.size() < 2 * kFewestSamples) throw too_few(0);
+    if (samples_.size() < 2 * kMinSamples) throw too_few(0);
     dt_ = (samples_.back().time - samples_.front().time) / static_cast<double>(samples_.size() - 1);
     split_into_flights();
     keep_free_flights();
@@ -326,7 +324,7 @@ class SeriesFit {
 InputError SeriesFit::too_few(std::size_t flights) const {
   return {{.file = {}, .key = "bounces"},
           fmt::format("{} show {} of at least {} samples; two consecutive flights are needed.",
-                      counted(samples_.size(), "sample"), counted(flights, "free flight"), kFewestSamples)};
+                      plural(samples_.size(), "sample"), plural(flights, "free flight"), kMinSamples)};
 }
 
 // Splits the series at the impacts. The first flight that is too short, as when the bouncing dies out, ends
@@ -341,7 +339,7 @@ void SeriesFit::split_into_flights() {
         static_cast<std::size_t>(std::count_if(samples_.begin(), samples_.end(), [&](const BounceSample& q) {
           return is_in(q, edges[i], edges[i + 1]);
         }));
-    if (count >= kFewestSamples)
+    if (count >= kMinSamples)
       s_.flights.push_back({edges[i], edges[i + 1]});
     else if (!s_.flights.empty())
       break;
@@ -352,14 +350,15 @@ void SeriesFit::split_into_flights() {
 // A bead that is held, or has come to rest, does not fly: its heights do not curve as those of the flights
 // do. Such parts at the beginning are skipped, the first one after a flight ends the series.
 void SeriesFit::keep_free_flights() {
-  constexpr double kFar = 0.3, kClear = 5;
+  constexpr double kMaxGravityDifference = 0.3;  // of a free flight, fraction of gravity
+  constexpr double kMaxHeightDifference = 5;     // the same as a difference of heights, in units of the noise
   std::vector<double> curvatures, residuals;
   for (const Flight& f : s_.flights) {
     const Parabola parabola = least_absolute(between(samples_, f.begin, f.end), f.middle());
     curvatures.push_back(parabola.c[2]);
     residuals.push_back(parabola.median_residual);
   }
-  const double seen = median_of(curvatures), gravity = options_.gravity.value_or(seen);
+  const double seen = upper_median(curvatures), gravity = options_.gravity.value_or(seen);
   if (!(seen > 0))
     throw InputError({.file = {}, .key = "bounces"},
                      "no free flights are seen, because most of the flights do not curve downwards; heights "
@@ -367,7 +366,7 @@ void SeriesFit::keep_free_flights() {
   const double noise = noise_of(std::move(residuals), samples_);
   const auto is_free = [&](std::size_t f) {
     const double off = std::abs(curvatures[f] - gravity), lasts = s_.flights[f].end - s_.flights[f].begin;
-    return off < kFar * gravity || off * lasts * lasts / 16 < kClear * noise;
+    return off < kMaxGravityDifference * gravity || off * lasts * lasts / 16 < kMaxHeightDifference * noise;
   };
   std::vector<Flight> kept;
   for (std::size_t f = 0; f < s_.flights.size(); ++f) {
@@ -515,40 +514,43 @@ BounceFit SeriesFit::result() const {
                      fmt::format("the flights do not determine restitution: {}.", report_.why_not));
   add_impacts(out);
   require_physical(out);
-  constexpr double kFar = 10, kShare = 0.01;
+  constexpr double kMaxRmsOfScatter = 10;  // rms residual, as a multiple of the scatter
+  constexpr double kMaxRmsOfSpan = 0.01;   // rms residual, as a fraction of the span of the heights
   const double scatter = scatter_of(samples_), span = span_of(samples_);
-  if (out.rms > kFar * scatter && out.rms > kShare * span)
+  if (out.rms > kMaxRmsOfScatter * scatter && out.rms > kMaxRmsOfSpan * span)
     throw InputError(
         {.file = {}, .key = "bounces"},
-        fmt::format("the heights are no free flights between impacts: they lie {:.2g} from the best "
-                    "ones, and scatter by {:.2g} only.",
+        fmt::format("the heights are not free flights between impacts: they lie {:.2g} from the best "
+                    "fit, but scatter by only {:.2g}.",
                     out.rms, scatter));
   return out;
 }
 
-// What no bead does comes from heights that are no bounces, and is no measurement.
+// A result that no bouncing bead can have comes from heights of something else, and measures nothing.
 void SeriesFit::require_physical(const BounceFit& fit) {
-  constexpr double kClear = 3, kUseful = 0.3;  // standard errors; largest error of a measurement
+  constexpr double kMaxExcess = 3;   // of e_n above 1 or below 0, standard errors
+  constexpr double kMaxError = 0.3;  // of e_n
   const auto fail = [](const std::string& what) { throw InputError({.file = {}, .key = "bounces"}, what); };
   if (!(fit.gravity > 0))
-    fail(fmt::format("the heights are no bounces: the best gravity is {:.3g}.", fit.gravity));
+    fail(fmt::format("the heights are not those of a bouncing bead: the best gravity is {:.3g}.",
+                     fit.gravity));
   for (const BounceImpact& i : fit.impacts)
     if (!(i.speed > 0))
-      fail(fmt::format(
-          "the heights are no bounces: at the impact at t = {:.4g} the bead would leave the plate "
-          "before it.",
-          i.time));
-  if (!(fit.restitution_error <= kUseful))
+      fail(
+          fmt::format("the heights are not those of a bouncing bead: at the impact at t = {:.4g} it would "
+                      "leave the plate before it.",
+                      i.time));
+  if (!(fit.restitution_error <= kMaxError))
     fail(fmt::format("the flights do not determine restitution: e_n = {:.3g} +- {:.2g}.", fit.restitution,
                      fit.restitution_error));
-  if (fit.restitution > 1 + kClear * fit.restitution_error)
+  if (fit.restitution > 1 + kMaxExcess * fit.restitution_error)
     fail(fmt::format(
         "e_n = {:.6g} +- {:.2g} is above 1, so the bead gains energy at its impacts; if the plate "
         "vibrates, give --drive-amplitude and --drive-omega.",
         fit.restitution, fit.restitution_error));
-  if (fit.restitution < -kClear * fit.restitution_error)
-    fail(fmt::format("e_n = {:.3g} +- {:.2g} is negative, so the heights are no bounces.", fit.restitution,
-                     fit.restitution_error));
+  if (fit.restitution < -kMaxExcess * fit.restitution_error)
+    fail(fmt::format("e_n = {:.3g} +- {:.2g} is negative, so the heights are not those of a bouncing bead.",
+                     fit.restitution, fit.restitution_error));
 }
 
 // Derivatives of each impact's restitution with respect to all parameters, by central differences.
@@ -588,8 +590,9 @@ void SeriesFit::add_mean(BounceFit& out, const Eigen::MatrixXd& covariance) cons
   const double freedom = static_cast<double>(n) - 1;
   WeightedMean mean = weighted_mean(e, covariance);
   const double chi2 = mean.chi2;
-  constexpr double kGrown = 3;  // standard deviations of chi^2, which fluctuates for few impacts
-  const bool scatters = freedom > 0 && chi2 > freedom + kGrown * std::sqrt(2 * freedom);
+  // Of chi^2 above its mean, in its standard deviations: for few impacts it fluctuates.
+  constexpr double kMinExcessOfChi2 = 3;
+  const bool scatters = freedom > 0 && chi2 > freedom + kMinExcessOfChi2 * std::sqrt(2 * freedom);
   if (scatters) {
     constexpr int kHalvings = 60;
     const auto scattered = [&](double variance) {
@@ -602,8 +605,8 @@ void SeriesFit::add_mean(BounceFit& out, const Eigen::MatrixXd& covariance) cons
   }
   out.restitution = mean.mean;
   out.restitution_error = mean.error;
-  constexpr double kClear = 5;
-  if (out.drag_error > 0 && out.drag < -kClear * out.drag_error)
+  constexpr double kMinNegativeDrag = 5;  // standard errors
+  if (out.drag_error > 0 && out.drag < -kMinNegativeDrag * out.drag_error)
     out.notes.push_back(
         fmt::format("the drag is negative, {:.3g} +- {:.1g}: air does not push a bead; check times, "
                     "heights and the stated gravity",

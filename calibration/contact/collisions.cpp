@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "core/constants.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
+#include "core/plural.hpp"
 
 namespace twincell::calibration {
 namespace {
@@ -41,7 +41,7 @@ class Finder {
     const std::size_t margin = velocities ? 0 : 1, n = (source_.n_frames() + stride_ - 1) / stride_;
     if (n < 2 + 2 * margin)
       throw InputError({.file = source_.name(), .key = {}}, fmt::format("has {}; collisions need {} or more.",
-                                                                        counted(n, "frame"), 2 + 2 * margin));
+                                                                        plural(n, "frame"), 2 + 2 * margin));
     std::vector<Frame> frames(2 + 2 * margin);
     for (std::size_t f = 0; f + frames.size() <= n; ++f) {
       for (std::size_t k = 0; k < frames.size(); ++k)
@@ -143,10 +143,10 @@ class Finder {
 
 FoundCollisions find_collisions(const TrajectorySource& trajectory, const CollisionOptions& options) {
   if (options.stride > 0) return Finder(trajectory, options, options.stride).find();
-  constexpr std::size_t kFewestFrames = 16;
+  constexpr std::size_t kMinFrames = 16;
   constexpr double kClearlyMore = 1.25;
   FoundCollisions best = Finder(trajectory, options, 1).find();
-  for (std::size_t stride = 2; trajectory.n_frames() / stride >= kFewestFrames; stride *= 2) {
+  for (std::size_t stride = 2; trajectory.n_frames() / stride >= kMinFrames; stride *= 2) {
     FoundCollisions found = Finder(trajectory, options, stride).find();
     const auto before = static_cast<double>(best.impacts.size());
     if (before > 0 && static_cast<double>(found.impacts.size()) <= kClearlyMore * before) break;

@@ -13,7 +13,7 @@ namespace twincell::calibration {
 analysis::Figure bounce_figure(const BounceFit& fit) {
   analysis::Figure f{.name = "bounce", .title = "Restitution of each impact", .width = 560, .height = 400};
   f.data = "# speed, e_n, error\n";
-  analysis::figure_style::Axis speed{.label = "impact speed"}, e_n{.label = "e_n"};
+  analysis::figure_style::PlotAxis speed{.label = "impact speed"}, e_n{.label = "e_n"};
   for (const double side : {-1.96, 1.96}) e_n.show(fit.restitution + side * fit.restitution_error);
   for (const BounceImpact& i : fit.impacts) {
     speed.show(i.speed);
@@ -34,7 +34,7 @@ analysis::Figure bounce_figure(const BounceFit& fit) {
 analysis::Figure collisions_figure(const FoundCollisions& found, const WaltonFit& fit, double shape) {
   analysis::Figure f{.name = "collisions", .title = "Collisions of two beads", .width = 720, .height = 400};
   double largest = 0;
-  analysis::figure_style::Axis speed{.label = "impact speed, σ/t_0", .low = 0},
+  analysis::figure_style::PlotAxis speed{.label = "impact speed, σ/t_0", .low = 0},
       e_n{.label = "e_n", .low = 0, .high = 1}, psi_1{.label = "Ψ_1", .low = 0}, psi_2{.label = "Ψ_2"};
   f.data = "# speed, e_n, psi_1, psi_2\n";
   for (const Impact& i : found.impacts) {
@@ -51,10 +51,10 @@ analysis::Figure collisions_figure(const FoundCollisions& found, const WaltonFit
         "(-({:.8g})*x > x-({:.8g})) ? -({:.8g})*x : x-({:.8g}) with lines lw 2 lc rgb blue notitle, ", beta,
         mu * reach, beta, mu * reach);
   }
-  constexpr double kShown = 8;  // largest Psi_1 drawn
-  psi_1.show(std::min(std::max(largest, 1.0), kShown));
+  constexpr double kMaxDrawnPsi_1 = 8;
+  psi_1.show(std::min(std::max(largest, 1.0), kMaxDrawnPsi_1));
   for (const Impact& i : found.impacts)
-    if (i.psi_1 <= kShown) psi_2.show(i.psi_2);
+    if (i.psi_1 <= kMaxDrawnPsi_1) psi_2.show(i.psi_2);
   const analysis::figure_style::Panels panels(1, 2, f.width, f.height, 1);
   constexpr const char* kPoints = "with points pt 7 ps 0.4 lc rgb '#222222' notitle";
   f.plot = analysis::figure_style::Panels::begin() + panels.panel(0) +

@@ -12,8 +12,8 @@
 #include "analysis/statistics/statistics.hpp"
 #include "calibration/fit/chi_square.hpp"
 #include "core/constants.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
+#include "core/plural.hpp"
 
 namespace twincell::calibration {
 namespace {
@@ -50,7 +50,7 @@ struct Polynomial {
 /// over most of a range and change strongly at its end (beds of nearly elastic beads) need degree 3.
 Polynomial best_surface(const std::vector<Sought>& ranges, const std::vector<std::vector<double>>& places,
                         const Eigen::VectorXd& y) {
-  constexpr double kClearly = 0.95;  // a smaller improvement may be chance
+  constexpr double kMaxErrorRatio = 0.95;  // of degree 3 to degree 2; a smaller improvement may be chance
   Polynomial best;
   for (const int degree : {2, 3}) {
     Polynomial p{.degree = degree, .c = {}, .spread = {}, .left = {}};
@@ -64,7 +64,7 @@ Polynomial best_surface(const std::vector<Sought>& ranges, const std::vector<std
     p.spread = (basis.transpose() * basis).inverse();
     const Eigen::ArrayXd leverage = (basis * p.spread).cwiseProduct(basis).rowwise().sum().array();
     p.left_out = std::sqrt((p.left.array() / (1 - leverage).max(1e-6)).square().mean());
-    if (degree == 2 || p.left_out < kClearly * best.left_out) best = p;
+    if (degree == 2 || p.left_out < kMaxErrorRatio * best.left_out) best = p;
   }
   return best;
 }
@@ -189,7 +189,7 @@ double drop_of(const std::vector<Surface>& surfaces) {
   if (left < 2)
     throw InputError({.file = {}, .key = "runs"},
                      fmt::format("{:g} observables of the same runs need {} more.", together,
-                                 counted(static_cast<int>(std::ceil(2 - left)), "run")));
+                                 plural(static_cast<int>(std::ceil(2 - left)), "run")));
   const double t95 = boost::math::quantile(boost::math::students_t(left), 0.975);
   return t95 * t95 * freedom / left;
 }

@@ -100,9 +100,9 @@ void fit_tangential(const std::vector<Impact>& impacts, double shape, WaltonFit&
   }
   for (const Point& q : kept) (-beta * q.psi_1 >= q.psi_1 - mu * reach ? out.sticking : out.sliding) += 1;
   // Scatter alone can place two or three impacts on a branch.
-  constexpr std::size_t kFewest = 4;
+  constexpr std::size_t kMinImpacts = 4;
   const auto leave_open = [&](const char* name, const char* branch, std::size_t n) {
-    if (n >= kFewest) return;
+    if (n >= kMinImpacts) return;
     auto& open = out.tangential.undetermined;
     if (std::find(open.begin(), open.end(), name) == open.end()) open.emplace_back(name);
     out.notes.push_back(fmt::format("{} is undetermined: {} of {} impacts {}", name, n, kept.size(), branch));

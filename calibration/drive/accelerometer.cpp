@@ -21,11 +21,11 @@ VibrationTable read_vibration(const std::filesystem::path& file) {
 }
 
 VibrationFit fit_vibration(const VibrationTable& table) {
-  constexpr std::size_t kFewest = 8;  // for amplitude, period and phase
+  constexpr std::size_t kMinValues = 8;  // for amplitude, period and phase
   const std::size_t n = table.time_s.size();
-  if (n < kFewest)
+  if (n < kMinValues)
     throw InputError({.file = table.file, .key = "acceleration_m_s2"},
-                     fmt::format("holds {} values; a fit needs {}.", n, kFewest));
+                     fmt::format("holds {} values; a fit needs {}.", n, kMinValues));
   const double step = n > 1 ? (table.time_s.back() - table.time_s.front()) / static_cast<double>(n - 1) : 0;
   for (std::size_t i = 0; i < n; ++i)
     if (!(std::abs(table.time_s[i] - table.time_s.front() - static_cast<double>(i) * step) <=

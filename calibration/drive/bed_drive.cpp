@@ -13,19 +13,19 @@ namespace twincell::calibration {
 namespace {
 
 /// Fewest columns of beads that give a step of the bed.
-constexpr std::size_t kFewestBeads = 5;
+constexpr std::size_t kMinBeads = 5;
 /// Fewest cycles that give a scatter between cycles.
-constexpr std::size_t kFewestCycles = 3;
+constexpr std::size_t kMinCycles = 3;
 /// Fewest steps per cycle that determine two components and a misfit.
-constexpr std::size_t kFewestSteps = 4;
+constexpr std::size_t kMinSteps = 4;
 /// Time after a landing, in cycles, during which the impact still moves the beads.
-constexpr double kImpact = 0.1;
+constexpr double kImpactDuration = 0.1;
 /// Largest rms departure of the bed's cycle-averaged steps from the plate's, relative to the steps.
-constexpr double kMisfit = 0.06;
+constexpr double kMaxMisfit = 0.06;
 /// Largest phase error of the bed relative to the plate, rad.
-constexpr double kPhaseError = 0.15;
+constexpr double kMaxPhaseError = 0.15;
 /// Trial amplitudes: range in units of the stated one, and ratio of consecutive ones.
-constexpr double kSmallest = 0.2, kLargest = 5, kRatio = 1.01;
+constexpr double kMinTrial = 0.2, kMaxTrial = 5, kTrialRatio = 1.01;
 
 /// Fit to the steps that are wholly within [from, to].
 struct Fit {
@@ -44,11 +44,11 @@ Fit fit_steps(const std::vector<BedSteps::Step>& all, double from, double to) {
   };
   std::map<std::int64_t, Sums> cycles;
   std::map<std::pair<int, std::int32_t>, Mean> phases;
-  constexpr double kRound = 1e-9;
+  constexpr double kRounding = 1e-9;  // cycles
   for (const BedSteps::Step& step : all)
     for (const int turn : {0, -1}) {  // [from, to] may begin in the cycle before
       const double begin = step.begin + turn, end = step.end + turn;
-      if (begin < from - kRound || end > to + kRound) continue;
+      if (begin < from - kRounding || end > to + kRounding) continue;
       if (to - from >= 1 && turn != 0) continue;
       const double s = std::sin(kTurn * end) - std::sin(kTurn * begin),
                    c = std::cos(kTurn * end) - std::cos(kTurn * begin);
@@ -64,12 +64,12 @@ Fit fit_steps(const std::vector<BedSteps::Step>& all, double from, double to) {
   std::vector<double> a;
   for (const auto& [cycle, sums] : cycles) {
     const double det = sums.ss * sums.cc - sums.sc * sums.sc;
-    if (sums.n < fit.steps || !(det > kRound * sums.ss * sums.cc)) continue;
+    if (sums.n < fit.steps || !(det > kRounding * sums.ss * sums.cc)) continue;
     a.push_back((sums.sz * sums.cc - sums.cz * sums.sc) / det);
     fit.b += (sums.cz * sums.ss - sums.sz * sums.sc) / det;
   }
   fit.cycles = a.size();
-  if (a.size() < kFewestCycles) return fit;
+  if (a.size() < kMinCycles) return fit;
   const auto n = static_cast<double>(a.size());
   for (const double value : a) fit.a += value / n;
   fit.b /= n;
@@ -102,7 +102,7 @@ std::optional<TimeOnPlate> time_on_plate(double gamma) {
 
 std::optional<TimeOnPlate> time_at_rest(double gamma) {
   auto on = time_on_plate(gamma);
-  if (on && gamma > 1) on->from += kImpact;
+  if (on && gamma > 1) on->from += kImpactDuration;
   return on;
 }
 
@@ -118,7 +118,7 @@ void BedSteps::append(const Frame& frame) {
       const auto [at, isnew] = lowest.try_emplace(column, i);
       if (!isnew && r.z() < before_.position[at->second].z()) at->second = i;
     }
-    if (lowest.size() >= kFewestBeads) {
+    if (lowest.size() >= kMinBeads) {
       std::vector<double> dz, down;
       for (const auto& [column, i] : lowest) {
         dz.push_back(frame.position[i].z() - before_.position[i].z());
@@ -148,15 +148,15 @@ std::optional<BedDrive> amplitude_of(const std::vector<BedSteps::Step>& steps, c
   const double stated = drive.amplitude, per = drive.omega * drive.omega / drive.gravity;
   std::optional<BedDrive> found;
   double last = 0;
-  for (double amplitude = smallest * stated; amplitude < largest * stated; amplitude *= kRatio) {
+  for (double amplitude = smallest * stated; amplitude < largest * stated; amplitude *= kTrialRatio) {
     const auto rest = time_at_rest(amplitude * per);
     if (!rest) break;
     const Fit fit = fit_steps(steps, rest->from, rest->to);
-    if (fit.cycles < kFewestCycles || fit.steps < kFewestSteps) break;  // larger A leaves fewer phases
+    if (fit.cycles < kMinCycles || fit.steps < kMinSteps) break;  // larger A leaves fewer phases
     const double ratio = fit.a / amplitude;
     const bool through = last > 1 && ratio <= 1;
     last = ratio;
-    if (!through || fit.misfit > kMisfit || std::abs(fit.b) > kPhaseError * fit.a) continue;
+    if (!through || fit.misfit > kMaxMisfit || std::abs(fit.b) > kMaxPhaseError * fit.a) continue;
     const BedDrive here{.amplitude = fit.a,
                         .amplitude_error = fit.error,
                         .cycles = fit.cycles,
@@ -183,11 +183,11 @@ std::vector<BedSteps::Step> later(std::vector<BedSteps::Step> steps, int shift, 
 
 /// The drive at the only shift of the phases at which the bed moves like the stated plate.
 std::optional<BedDrive> at_another_phase(const BedSteps& bed, const Drive& drive, int phases) {
-  constexpr double kSame = 0.1;
+  constexpr double kMaxAmplitudeDifference = 0.1;  // fraction of the stated amplitude
   std::optional<BedDrive> found;
   for (int shift = 1; shift < phases; ++shift) {
-    std::optional<BedDrive> here =
-        amplitude_of(later(bed.steps(), shift, phases), drive, 1 - kSame, 1 + kSame);
+    std::optional<BedDrive> here = amplitude_of(later(bed.steps(), shift, phases), drive,
+                                                1 - kMaxAmplitudeDifference, 1 + kMaxAmplitudeDifference);
     if (!here) continue;
     if (found && shift - found->phase_shift > 1) return std::nullopt;
     const double off = std::abs(std::log(here->amplitude / drive.amplitude));
@@ -222,7 +222,7 @@ Fall largest_fall(const std::vector<BedSteps::Step>& steps, const Drive& drive) 
   }
   Fall fall;
   for (const auto& [phase, sums] : phases) {
-    if (sums.n < kFewestCycles) continue;
+    if (sums.n < kMinCycles) continue;
     const double mean = sums.sum / sums.n,
                  error = std::sqrt(std::max(0.0, sums.squares / sums.n - mean * mean) / (sums.n - 1));
     if (mean < fall.acceleration) fall = {phase, mean, error};
@@ -230,22 +230,23 @@ Fall largest_fall(const std::vector<BedSteps::Step>& steps, const Drive& drive) 
   return fall;
 }
 
-/// What contradicts any drive of this strength, as a clause; otherwise empty.
+/// The observation that contradicts any drive of this strength, as a clause; otherwise empty.
 std::string contradiction_of(const std::vector<BedSteps::Step>& steps, const Drive& drive) {
-  constexpr double kStill = 0.05;  // rms step, in that of the plate
-  constexpr double kClearly = 1.5, kErrors = 3;
-  double moved = 0, of_plate = 0;  // sums of squares
+  constexpr double kMinMotion = 0.05;       // rms step of a moving bed, fraction of the plate's
+  constexpr double kMaxAcceleration = 1.5;  // multiple of gravity, or of the acceleration of the plate
+  constexpr double kMaxDeviation = 3;       // standard errors
+  double moved = 0, of_plate = 0;           // sums of squares
   for (const BedSteps::Step& step : steps) {
     const double plate = drive.amplitude * (std::sin(kTurn * step.end) - std::sin(kTurn * step.begin));
     moved += step.dz * step.dz;
     of_plate += plate * plate;
   }
-  if (moved < kStill * kStill * of_plate)
+  if (moved < kMinMotion * kMinMotion * of_plate)
     return fmt::format("the beads stand still in the frames, but the cell states a plate of A = {:.4g} sigma",
                        drive.amplitude);
   const Fall fall = largest_fall(steps, drive);
-  if (const double most = kClearly * std::max(1.0, drive.gamma());
-      fall.acceleration < -most - kErrors * fall.error)
+  if (const double most = kMaxAcceleration * std::max(1.0, drive.gamma());
+      fall.acceleration < -most - kMaxDeviation * fall.error)
     return fmt::format(
         "the bed is accelerated downwards by {:.2g} +- {:.1g} g at phase {}, more than gravity and a plate "
         "with Gamma = {:.3g} can do: the picture is upside down, or the scale, the frame rate or the "
@@ -266,11 +267,10 @@ BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info) {
     return because("the drive is not a sine");
   if (info.phases_per_cycle == 0) return because("the frames have no fixed phases");
   if (bed.steps().empty())
-    return because(
-        fmt::format("fewer than {} columns of beads are seen in consecutive frames", kFewestBeads));
+    return because(fmt::format("fewer than {} columns of beads are seen in consecutive frames", kMinBeads));
   if (std::string why = contradiction_of(bed.steps(), *info.drive); !why.empty())
     return {.amplitude = 0, .contradiction = std::move(why)};
-  if (const auto found = amplitude_of(bed.steps(), *info.drive, kSmallest, kLargest)) return *found;
+  if (const auto found = amplitude_of(bed.steps(), *info.drive, kMinTrial, kMaxTrial)) return *found;
   if (const auto found = at_another_phase(bed, *info.drive, info.phases_per_cycle)) return *found;
   return because("at no phase of the cycle do its lowest beads move like a plate");
 }

@@ -28,6 +28,7 @@ namespace twincell::calibration {
 struct TimeOnPlate {
   double from = 0, to = 1;
 };
+/// The interval for the acceleration Gamma = A omega^2/g of the plate.
 std::optional<TimeOnPlate> time_on_plate(double gamma);
 /// The same without the tenth of a cycle after a landing, during which the impact still moves the beads.
 std::optional<TimeOnPlate> time_at_rest(double gamma);
@@ -59,15 +60,14 @@ struct BedDrive {
   double from = 0, to = 1;                    ///< fitted interval, fractions of a cycle
   int phase_shift = 0;         ///< frames by which the bed is later in the cycle than its phases state
   std::string not_comparable;  ///< why the bed gives no amplitude; empty if it does
-  std::string contradiction;   ///< clause: the bed moves as under no drive of this kind; otherwise empty
+  std::string contradiction;   ///< clause: why no drive of this strength moves the bed so; otherwise empty
 };
 
 /// Fits the amplitude to the steps of the bed. Of several solutions it returns the one closest to the stated
 /// amplitude. If the bed moves like a plate at no phase, the phases are shifted by whole frames; a shift is
-/// believed if it alone (or one of two neighbours) makes the bed move like a plate of the stated amplitude
-/// within a tenth. A contradiction is a bed that stands still, and one that is accelerated downwards at some
-/// phase by more than 1.5 times what gravity, or a plate to which it sticks, can do.
-/// \pre `info` states the drive
+/// accepted if it alone (or one of two neighbours) makes the bed move like a plate of the stated amplitude
+/// within a tenth. A contradiction is a bed that stands still, or whose downward acceleration at some phase
+/// is more than 1.5 times the larger of gravity and the plate's acceleration. \pre `info` states the drive
 BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info);
 
 }  // namespace twincell::calibration

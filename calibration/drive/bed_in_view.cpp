@@ -10,16 +10,18 @@
 #include <numbers>
 
 #include "calibration/drive/bed_drive.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
+#include "core/plural.hpp"
 #include "imaging/phase/phase_estimation.hpp"
 
 namespace twincell::calibration {
 
 namespace {
 
-constexpr double kTouch = 0.003;  // diameters; beads need not touch
+// Error of the contact of the outermost beads with a wall or the plate, in bead diameters: they need not
+// touch it.
+constexpr double kContactError = 0.003;
 
 /// Height of the lower side of the bed.
 double lower_side(const std::vector<SizedBead>& frame, double diameter) {
@@ -52,8 +54,8 @@ std::optional<Estimate> wall_of_bed(const BeadFrames& beads, double diameter, bo
   for (const auto& frame : beads.frames)
     for (const SizedBead& b : frame) rims.push_back((right ? b.x : -b.x) + b.radius);
   const auto frames = static_cast<double>(beads.frames.size());
-  constexpr double kFalse = 0.05;  // false beads outside, per frame
-  const auto skip = static_cast<std::size_t>(kFalse * frames);
+  constexpr double kFalseBeads = 0.05;  // outside the wall, per frame
+  const auto skip = static_cast<std::size_t>(kFalseBeads * frames);
   if (rims.size() <= skip) return std::nullopt;
   std::sort(rims.begin(), rims.end(), std::greater<>());
   const double from = rims[skip] - 0.1 * diameter;
@@ -67,7 +69,7 @@ std::optional<Estimate> wall_of_bed(const BeadFrames& beads, double diameter, bo
   }
   if (touching < 1.5 * frames || touching < 2 * next) return std::nullopt;
   const double mean = sum / touching, scatter = std::sqrt(std::max(0.0, squares / touching - mean * mean));
-  const double error = std::hypot(scatter / std::sqrt(touching / frames), kTouch * diameter);
+  const double error = std::hypot(scatter / std::sqrt(touching / frames), kContactError * diameter);
   return Estimate{(right ? 1 : -1) * (place + mean), error};
 }
 
@@ -95,8 +97,8 @@ PlateOfBed plate_of_bed(const BeadFrames& beads, double diameter, double gamma) 
     if (t > rest->to) t -= 1;
     if (t >= rest->from && std::isfinite(plate.heights[f])) resting.push_back(f);
   }
-  constexpr std::size_t kFewest = 8;
-  if (resting.size() < kFewest) refuse("rests on the plate in only " + counted(resting.size(), "frame"));
+  constexpr std::size_t kMinFrames = 8;  // at rest on the plate
+  if (resting.size() < kMinFrames) refuse("rests on the plate in only " + plural(resting.size(), "frame"));
   Eigen::MatrixX3d model(static_cast<Eigen::Index>(resting.size()), 3);
   Eigen::VectorXd seen(static_cast<Eigen::Index>(resting.size()));
   for (std::size_t k = 0; k < resting.size(); ++k) {
@@ -107,15 +109,15 @@ PlateOfBed plate_of_bed(const BeadFrames& beads, double diameter, double gamma) 
   const Eigen::Matrix3d normal = model.transpose() * model;
   const Eigen::Vector3d fit = normal.ldlt().solve(model.transpose() * seen);
   const double rms = (model * fit - seen).norm() / std::sqrt(static_cast<double>(resting.size()) - 3);
-  constexpr double kSlanted = 0.2;
-  if (!(fit[1] > 0) || std::abs(fit[2]) > kSlanted * fit[1])
+  constexpr double kMaxCosine = 0.2;  // amplitude of the cosine, fraction of that of the sine
+  if (!(fit[1] > 0) || std::abs(fit[2]) > kMaxCosine * fit[1])
     refuse(fmt::format("does not move as one that rests on a plate with Gamma = {:g}", gamma));
-  // Errors of frames of one cycle are alike: what counts is the number of cycles.
+  // Errors of the frames of one cycle are correlated, so the number of cycles determines the error.
   const double cycles = std::max(1.0, static_cast<double>(plate.heights.size()) / n);
   const double per_cycle = std::sqrt(std::max(1.0, static_cast<double>(resting.size()) / cycles));
   const Eigen::Matrix3d covariance = normal.inverse();
   const auto error = [&](int k) {
-    return std::hypot(per_cycle * rms * std::sqrt(covariance(k, k)), kTouch * diameter);
+    return std::hypot(per_cycle * rms * std::sqrt(covariance(k, k)), kContactError * diameter);
   };
   plate.row = {-fit[0], error(0)};
   plate.amplitude = {std::hypot(fit[1], fit[2]), error(1)};

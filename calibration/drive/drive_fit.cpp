@@ -148,7 +148,7 @@ Scatter scatter_of(const std::vector<Sample>& all, const Fitted& f, const std::v
                    const std::vector<double>& residuals) {
   // Spreads over the slow and the fast half of the cycle: <cos^2> is 0.1817 in the slow half, 0.8183 in the
   // fast one.
-  constexpr double kSlow = 0.1817, kFast = 0.8183;
+  constexpr double kCos2Slow = 0.1817, kCos2Fast = 0.8183;
   std::vector<double> slow, fast;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const double c = std::cos(p[3] * (all[i].t - f.middle) + p[2]);
@@ -157,7 +157,7 @@ Scatter scatter_of(const std::vector<Sample>& all, const Fitted& f, const std::v
   const double floor = 1e-9 * std::max(1.0, std::abs(p[1]));
   if (slow.size() < 10 || fast.size() < 10) return {std::max(robust_spread(residuals), floor), 0};
   const double a = std::pow(robust_spread(slow), 2), b = std::pow(robust_spread(fast), 2);
-  const double moving = (b - a) / (kFast - kSlow), still = a - kSlow * moving;
+  const double moving = (b - a) / (kCos2Fast - kCos2Slow), still = a - kCos2Slow * moving;
   if (moving <= 0 || still <= 0) return {std::max(robust_spread(residuals), floor), 0};
   return {std::max(std::sqrt(still), floor), std::sqrt(moving)};
 }
@@ -243,13 +243,13 @@ std::vector<Sample> samples_of(const std::vector<double>& heights, const std::ve
 /// cause them, and no number of cycles averages them away. \param harmonics set to the number of harmonics
 /// used
 double cyclic_factor(const Attempt& a, int& harmonics) {
-  constexpr int kFirst = 3, kMost = 10;
+  constexpr int kFirstHarmonic = 3, kLastHarmonic = 10;
   const std::vector<double>& p = a.fitted.report.values;
-  const int last = std::min(kMost, static_cast<int>(std::ceil(kPi / p[3] - 1e-6)) - 1);
-  harmonics = std::max(0, last - kFirst + 1);
+  const int last = std::min(kLastHarmonic, static_cast<int>(std::ceil(kPi / p[3] - 1e-6)) - 1);
+  harmonics = std::max(0, last - kFirstHarmonic + 1);
   if (harmonics == 0) return 1;
   double power = 0, squares = 0;
-  for (int m = kFirst; m <= last; ++m) {
+  for (int m = kFirstHarmonic; m <= last; ++m) {
     double s = 0, c = 0;
     for (std::size_t i = 0; i < a.samples.size(); ++i) {
       if (!a.follows(i)) continue;
@@ -337,26 +337,26 @@ bool scatters(const Attempt& a, double share) {
 
 /// Residuals of missing frames persist from frame to frame; those of jitter do not.
 bool residuals_persist(const Attempt& a) {
-  constexpr double kCorrelated = 0.5;
+  constexpr double kMinCorrelation = 0.5;  // of consecutive residuals
   double own = 0, next = 0;
   for (std::size_t i = 0; i < a.residuals.size(); ++i) {
     own += a.residuals[i] * a.residuals[i];
     if (i > 0) next += a.residuals[i] * a.residuals[i - 1];
   }
-  return next > kCorrelated * own;
+  return next > kMinCorrelation * own;
 }
 
 /// Fits with the frames as they are, one interval apart.
 Timed first_attempt(const std::vector<double>& heights, int frames_per_cycle) {
-  constexpr std::size_t kFewest = 8;
+  constexpr std::size_t kMinFrames = 8;
   Timed out;
   for (std::size_t f = 0; f < heights.size(); ++f) out.ticks.push_back(static_cast<double>(f));
   std::vector<Sample> samples = samples_of(heights, out.ticks);
-  if (samples.size() < kFewest)
+  if (samples.size() < kMinFrames)
     throw InputError(
         {}, fmt::format("the plate is seen in {} of {} frames; at least {} are needed for amplitude, period "
                         "and phase.",
-                        samples.size(), heights.size(), kFewest));
+                        samples.size(), heights.size(), kMinFrames));
   const double omega = frames_per_cycle > 0 ? 2 * kPi / frames_per_cycle : search_omega(samples);
   out.attempt = attempt(std::move(samples), omega);
   return out;
@@ -365,10 +365,11 @@ Timed first_attempt(const std::vector<double>& heights, int frames_per_cycle) {
 /// Whether frames are lost or doubled in nearly every cycle, at the same phase or more than one of them: a
 /// cycle of another length then passes for the real one, as where the plate is not seen at its lowest.
 bool slips_in_each_cycle(const imaging::SineSlips& slips, int frames_per_cycle) {
-  constexpr double kEach = 0.7, kSeveral = 1.5, kTogether = 0.95;
+  constexpr double kMinPerCycle = 0.7, kSeveralPerCycle = 1.5;  // lost and doubled frames per cycle
+  constexpr double kMinCoherence = 0.95;  // length of the mean of exp(i phase) over the slips
   const double cycles = static_cast<double>(slips.ticks.back() - slips.ticks.front()) / frames_per_cycle;
   const double each = static_cast<double>(slips.dropped + slips.doubled) / cycles;
-  if (each < kEach || each >= kSeveral) return each >= kSeveral;
+  if (each < kMinPerCycle || each >= kSeveralPerCycle) return each >= kSeveralPerCycle;
   std::complex<double> sum = 0;
   double events = 0;
   for (std::size_t i = 1; i < slips.ticks.size(); ++i)
@@ -376,7 +377,7 @@ bool slips_in_each_cycle(const imaging::SineSlips& slips, int frames_per_cycle) 
       sum += std::polar(1.0, 2 * kPi * static_cast<double>(slips.ticks[i]) / frames_per_cycle);
       ++events;
     }
-  return std::abs(sum) > kTogether * events;
+  return std::abs(sum) > kMinCoherence * events;
 }
 
 /// Repairs dropped and doubled frames: for each number of frames per cycle, finds the best path of phases and
@@ -396,8 +397,8 @@ void repair_frames(const std::vector<double>& heights, int frames_per_cycle, Tim
       lock.doubled = slips->doubled;
     }
   }
-  constexpr double kMuch = 0.05;  // of A
-  if (scatters(now.attempt, kMuch))
+  constexpr double kMaxScatter = 0.05;  // fraction of A
+  if (scatters(now.attempt, kMaxScatter))
     lock.notes.push_back(
         fmt::format("the heights scatter by {:.2g} of A about a sine: frames may be missing, or the "
                     "drive changes; calibrate plate takes --frames-per-cycle, which shows missing frames",
@@ -442,7 +443,7 @@ void require_motion(const DriveFit& lock, const Attempt& a, const std::vector<do
               "cycle are stated; correct camera.frames_per_cycle or --frames-per-cycle{}.",
               report.values[1], period, stated,
               std::abs(period - std::round(period)) * static_cast<double>(heights.size()) > 0.5 * period
-                  ? ", or state none, as this period is no whole number"
+                  ? ", or state none, as this period is not a whole number"
                   : ""));
   }
   throw InputError(
@@ -480,7 +481,7 @@ void add_second_harmonic(DriveFit& lock, const Attempt& a, int harmonics, double
 
 /// Finds the stretches out of lock, and says how many frames do not follow the fit.
 void add_stretches(DriveFit& lock) {
-  constexpr double kMany = 0.03;  // of the frames
+  constexpr double kMaxShareOffFit = 0.03;  // of the frames
   std::vector<double> misses;
   for (const LockedFrame& frame : lock.frames)
     misses.push_back(frame.lock == FrameLock::unseen ? kNaN : frame.lock == FrameLock::locked ? 0 : 2);
@@ -494,7 +495,7 @@ void add_stretches(DriveFit& lock) {
         fmt::format("the plate does not follow the drive in {} of {} frames ({}), as before the shaker "
                     "starts or after it stops: they have no phase, and track leaves them out",
                     without, n, imaging::in_words(lock.out_of_lock_stretches)));
-  if (static_cast<double>(single) > kMany * static_cast<double>(n))
+  if (static_cast<double>(single) > kMaxShareOffFit * static_cast<double>(n))
     lock.notes.push_back(fmt::format(
         "the plate is off the fit in {} {} of {} frames: its edge is misread there, or the drive is not "
         "steady",
@@ -536,14 +537,15 @@ namespace {
 
 /// fit_drive() without the frames that are repeated, and without the stretches out of lock.
 DriveFit fit_each(const std::vector<double>& heights, const DriveFitOptions& options) {
-  constexpr double kFollowed = 0.97;    // least share of frames that follow a fit without missing frames
-  constexpr std::size_t kShortRun = 3;  // longest run of frames that do not
+  constexpr double kMinFollowedShare = 0.97;  // of the frames, by a fit without missing frames
+  constexpr std::size_t kMinRunOffFit = 3;    // consecutive frames that suggest missing ones
   DriveFit lock;
   Timed timed = first_attempt(heights, options.frames_per_cycle);
   const Attempt& a = timed.attempt;
-  constexpr double kLittle = 0.01;  // of A
-  if (options.mend && (options.frames_per_cycle > 0 || followed_share(a) < kFollowed ||
-                       a.longest_run >= kShortRun || (scatters(a, kLittle) && residuals_persist(a))))
+  constexpr double kMinPersistentScatter = 0.01;  // fraction of A
+  if (options.mend &&
+      (options.frames_per_cycle > 0 || followed_share(a) < kMinFollowedShare ||
+       a.longest_run >= kMinRunOffFit || (scatters(a, kMinPersistentScatter) && residuals_persist(a))))
     repair_frames(heights, options.frames_per_cycle, timed, lock);
 
   const FitReport& report = a.fitted.report;

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "analysis/report/figure_style.hpp"
-#include "core/counted.hpp"
+#include "core/plural.hpp"
 
 namespace twincell::calibration {
 
@@ -20,7 +20,7 @@ analysis::Figure drive_fit_figure(const DriveFit& lock) {
            (lock.fit.values[4] * std::sin(2 * theta) + lock.fit.values[5] * std::cos(2 * theta));
     return z;
   };
-  analysis::figure_style::Axis phases{.label = "phase of the drive, cycles", .low = 0, .high = 1},
+  analysis::figure_style::PlotAxis phases{.label = "phase of the drive, cycles", .low = 0, .high = 1},
       height{.label = "height, px"}, off{.label = "residual, px"};
   off.show(0);
   std::string kinds[2];
@@ -49,7 +49,7 @@ analysis::Figure drive_fit_figure(const DriveFit& lock) {
       others ? ", 'plate.dat' index 2 using 1:2 with points pt 2 ps 0.9 lc rgb vermilion title 'out of lock'"
              : "",
       analysis::figure_style::axes(phases, off), analysis::figure_style::kLine);
-  f.caption = fmt::format("{} locked, {} out of lock", counted(lock.locked, "frame"), lock.out_of_lock);
+  f.caption = fmt::format("{} locked, {} out of lock", plural(lock.locked, "frame"), lock.out_of_lock);
   return f;
 }
 

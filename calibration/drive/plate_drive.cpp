@@ -45,9 +45,9 @@ std::pair<CellGeometry, DriveFit> plate_in_picture(const imaging::CellDescriptio
                                         .model_error = kHeightModelError_px,
                                         .repeats = edges.repeats});
   if (cell.origin && cell.pixels_per_sigma) {
-    constexpr double kFarthest = 0.5;
+    constexpr double kMaxDistance = 0.5;  // sigma
     const double row = geometry.plate_row - drive.z0;
-    if (std::abs(row - cell.origin->y_px) > kFarthest * *cell.pixels_per_sigma)
+    if (std::abs(row - cell.origin->y_px) > kMaxDistance * *cell.pixels_per_sigma)
       throw InputError({}, fmt::format("the lowest edge in the picture is at row {:.1f}, but the plate, by "
                                        "camera.origin_px, is at row {:.1f}",
                                        row, cell.origin->y_px));
@@ -61,9 +61,9 @@ bool lacks_drive(const imaging::CellDescription& cell, bool phases) {
   return !is_whole(cell.drive_spec) || (phases && !cell.phase_lock.locked());
 }
 
-std::string complete_drive(imaging::CellDescription& cell, bool phases,
-                           const std::filesystem::path& cell_file, const std::filesystem::path& stack,
-                           const imaging::FrameRange& range, int threads, Progress& progress) {
+CompletedDrive complete_drive(imaging::CellDescription cell, bool phases,
+                              const std::filesystem::path& cell_file, const std::filesystem::path& stack,
+                              const imaging::FrameRange& range, int threads, Progress& progress) {
   const auto where = [&](const char* key) { return Where{.file = cell_file.string(), .key = key}; };
   const double diameter = diameter_for_edges(stack, cell.bright, cell.pixels_per_sigma.value_or(0));
   const StackEdges edges = read_stack_edges(*imaging::chosen_frames(imaging::open_frames(stack), range),
@@ -110,7 +110,7 @@ std::string complete_drive(imaging::CellDescription& cell, bool phases,
     said += fmt::format("{} {} frames per cycle, the first at phase {}", said.back() == ':' ? "" : ",",
                         lock.frames_per_cycle, lock.first_phase);
   }
-  return said;
+  return {std::move(cell), std::move(said)};
 }
 
 namespace {
@@ -135,16 +135,17 @@ class FirstFrames : public imaging::FrameSource {
   std::size_t most_, left_;
 };
 
-constexpr double kErrors = 5, kShare = 0.03, kPixels = 0.3;
+/// Largest difference of a measured and a stated number: standard errors, fraction of the stated one, px.
+constexpr double kMaxStandardErrors = 5, kMaxRelativeDifference = 0.03, kMaxDifference_px = 0.3;
 /// The bed's lower surface departs from the plate by up to 4 % of A (recovery.BedDrive), because of landings
 /// and of beads that are pushed up.
-constexpr double kShareOfBed = 0.1;
+constexpr double kMaxRelativeDifferenceOfBed = 0.1;
 
 /// Compares the measured amplitude in `check` with the stated one.
 void compare_amplitude(DriveCheck& check, const std::string& what, double stated, double share,
                        double scale) {
   if (std::abs(check.amplitude - stated) >
-      std::max({kErrors * check.amplitude_error, share * stated, kPixels / scale}))
+      std::max({kMaxStandardErrors * check.amplitude_error, share * stated, kMaxDifference_px / scale}))
     check.disagreement = fmt::format("{} moves with A = {:.4g} +- {:.2g} sigma, but the cell states {:.4g}",
                                      what, check.amplitude, check.amplitude_error, stated);
 }
@@ -153,7 +154,7 @@ void compare_omega(DriveCheck& check, const std::string& what, const DriveFit& s
   if (!check.frame_rate_hz || !t0 || !check.disagreement.empty()) return;
   const double omega = seen.omega * *check.frame_rate_hz * *t0,
                error = seen.omega_error * *check.frame_rate_hz * *t0;
-  if (std::abs(omega - stated) > std::max(kErrors * error, kShare * stated))
+  if (std::abs(omega - stated) > std::max(kMaxStandardErrors * error, kMaxRelativeDifference * stated))
     check.disagreement =
         fmt::format("{} moves with omega = {:.4g} +- {:.2g} per t0, but the cell states {:.4g}", what, omega,
                     error, stated);
@@ -161,12 +162,14 @@ void compare_omega(DriveCheck& check, const std::string& what, const DriveFit& s
 
 /// Compares the second harmonic with the stated one, or with none, as vectors of amplitude and phase.
 void compare_harmonic(DriveCheck& check, const std::string& what, const DriveFit& seen, const Drive& stated) {
-  constexpr double kLeast = 0.03;  // of A; its acceleration is four times as large
+  constexpr double kMaxHarmonicDifference = 0.03;  // of A; its acceleration is four times as large
   if (!seen.second_harmonic || stated.recorded || !check.disagreement.empty()) return;
   const Harmonic second = stated.harmonics.empty() ? Harmonic{} : stated.harmonics.front();
   const std::complex<double> there = std::polar(*seen.second_harmonic, kTurn * *seen.second_harmonic_phase),
                              said = std::polar(second.amplitude, kTurn * second.phase);
-  if (std::abs(there - said) <= std::max(kLeast, kErrors * *seen.second_harmonic_error)) return;
+  if (std::abs(there - said) <=
+      std::max(kMaxHarmonicDifference, kMaxStandardErrors * *seen.second_harmonic_error))
+    return;
   const std::string cell = second.amplitude > 0
                                ? fmt::format("states {:.3g} at phase {:.2g}", second.amplitude, second.phase)
                                : std::string("states none");
@@ -178,13 +181,14 @@ void compare_harmonic(DriveCheck& check, const std::string& what, const DriveFit
 /// The period is known in frames, without a frame rate and a scale.
 void compare_period(DriveCheck& check, const std::string& what, const DriveFit& seen, int stated) {
   if (stated <= 0 || !check.disagreement.empty()) return;
-  if (std::abs(seen.period - stated) > std::max(kErrors * seen.period_error, kShare * stated))
+  if (std::abs(seen.period - stated) >
+      std::max(kMaxStandardErrors * seen.period_error, kMaxRelativeDifference * stated))
     check.disagreement = fmt::format(
         "{} moves with a period of {:.4g} +- {:.2g} frames, but the cell states {} frames per cycle", what,
         seen.period, seen.period_error, stated);
 }
 
-/// The stated frame rate and frames per cycle give a frequency by themselves, whatever the frames show. The
+/// The stated frame rate and frames per cycle give a frequency without any frame. The
 /// playback rate of a video is not the camera's, so only a stated rate counts.
 void compare_frame_rate(DriveCheck& check, const imaging::CellDescription& cell,
                         const imaging::FrameRange& range, double stated) {
@@ -192,7 +196,7 @@ void compare_frame_rate(DriveCheck& check, const imaging::CellDescription& cell,
   if (!cell.frame_rate_hz || !t0 || !cell.phase_lock.locked() || !check.disagreement.empty()) return;
   const std::int64_t per_cycle = cell.phase_lock.frames_per_cycle * range.step;  // of the whole stack
   const double omega = 2 * M_PI * *cell.frame_rate_hz * *t0 / static_cast<double>(per_cycle);
-  if (std::abs(omega - stated) > kShare * stated)
+  if (std::abs(omega - stated) > kMaxRelativeDifference * stated)
     check.disagreement = fmt::format(
         "{:g} frames per second and {} frames per cycle give omega = {:.4g} per t0, but the cell states "
         "{:.4g}",
@@ -217,8 +221,8 @@ DriveFit motion_of_plate(const imaging::CellDescription& cell, const StackEdges&
   const auto as_stated = fitted(cell);
   if (!as_stated) return plate_in_picture(free, edges).second;
   const auto searched = fitted(free);
-  constexpr double kAsWell = 1.1;
-  return searched && searched->locked >= as_stated->locked && searched->rms <= kAsWell * as_stated->rms
+  constexpr double kMaxRmsRatio = 1.1;  // of the fit with a searched period to that with the stated one
+  return searched && searched->locked >= as_stated->locked && searched->rms <= kMaxRmsRatio * as_stated->rms
              ? *searched
              : *as_stated;
 }
@@ -226,10 +230,10 @@ DriveFit motion_of_plate(const imaging::CellDescription& cell, const StackEdges&
 /// Whether the stated position of the plate is in the picture, and further from the seen one than a rotation
 /// of the camera explains. A bed that lies on a plate out of the picture moves as that plate does.
 bool is_misplaced(const imaging::CellDescription& cell, const CellGeometry& geometry, double row) {
-  constexpr double kFarthest = 2;  // bead diameters
+  constexpr double kMaxDistance = 2;  // bead diameters
   const double stated = cell.origin->y_px, turned = std::abs(std::sin(geometry.rotation_deg * M_PI / 180));
   return stated < geometry.size.height &&
-         std::abs(row - stated) > kFarthest * *cell.pixels_per_sigma + turned * geometry.size.width;
+         std::abs(row - stated) > kMaxDistance * *cell.pixels_per_sigma + turned * geometry.size.width;
 }
 
 /// The cell file of another stack, or a wrong origin: an edge follows a sine as cleanly as only a plate does,
@@ -237,15 +241,17 @@ bool is_misplaced(const imaging::CellDescription& cell, const CellGeometry& geom
 /// while it flies, and has the amplitude of the plate while it lies on it.
 void look_for_plate_elsewhere(DriveCheck& check, const imaging::CellDescription& cell,
                               const StackEdges& edges, double stated) {
-  constexpr double kClean = 0.02, kSeen = 0.95, kLeast_px = 1;  // of the amplitude; of the frames
+  constexpr double kMaxRms = 0.02;          // fraction of the amplitude
+  constexpr double kMinLockedShare = 0.95;  // of the frames
+  constexpr double kMinAmplitude_px = 1;
   if (!cell.origin) return;
   imaging::CellDescription anywhere = cell;
   anywhere.origin.reset();
   anywhere.phase_lock = {};
   try {
     const auto [geometry, seen] = plate_in_picture(anywhere, edges);
-    if (seen.amplitude < kLeast_px || seen.rms > kClean * seen.amplitude ||
-        static_cast<double>(seen.locked) < kSeen * static_cast<double>(geometry.heights.size()))
+    if (seen.amplitude < kMinAmplitude_px || seen.rms > kMaxRms * seen.amplitude ||
+        static_cast<double>(seen.locked) < kMinLockedShare * static_cast<double>(geometry.heights.size()))
       return;
     const double scale = *cell.pixels_per_sigma, row = geometry.plate_row - seen.z0;
     DriveCheck found;
@@ -255,7 +261,7 @@ void look_for_plate_elsewhere(DriveCheck& check, const imaging::CellDescription&
         found,
         fmt::format("the plate in the frames, at row {:.1f} where camera.origin_px states {:.1f},", row,
                     cell.origin->y_px),
-        stated, kShare, scale);
+        stated, kMaxRelativeDifference, scale);
     check.plate_elsewhere = found.disagreement;
     check.amplitude = found.amplitude;
     check.amplitude_error = found.amplitude_error;
@@ -303,9 +309,10 @@ DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::files
   const double scale = *cell.pixels_per_sigma;
   // Three cycles determine the amplitude; reading all of a long film would cost as much as locating its
   // beads.
-  constexpr std::size_t kCycles = 3, kFewest = 40;
+  constexpr std::size_t kCyclesRead = 3, kMinFrames = 40;
   FirstFrames beginning(
-      stack, range, std::max(kFewest, kCycles * static_cast<std::size_t>(cell.phase_lock.frames_per_cycle)));
+      stack, range,
+      std::max(kMinFrames, kCyclesRead * static_cast<std::size_t>(cell.phase_lock.frames_per_cycle)));
   const StackEdges edges = read_stack_edges(beginning, cell.bright,
                                             diameter_for_edges(stack, cell.bright, scale), threads, progress);
   check.frame_rate_hz = frame_rate_of(cell.frame_rate_hz, edges, stack, range);
@@ -315,7 +322,7 @@ DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::files
     check.amplitude = seen.amplitude / scale;
     check.amplitude_error = seen.amplitude_error / scale;
     const std::string what = "the plate in the frames";
-    compare_amplitude(check, what, drive->amplitude, kShare, scale);
+    compare_amplitude(check, what, drive->amplitude, kMaxRelativeDifference, scale);
     if (fixed_phases) compare_period(check, what, seen, cell.phase_lock.frames_per_cycle);
     compare_omega(check, what, seen, drive->omega, cell.scale.t0_s());
     compare_harmonic(check, what, seen, *drive);
@@ -366,7 +373,7 @@ DriveCheck check_by_bed(const BedSteps& bed, const TrajectoryInfo& info,
     check.disagreement = phase_disagreement(seen.phase_shift, info);
     return check;
   }
-  compare_amplitude(check, what, info.drive->amplitude, kShareOfBed,
+  compare_amplitude(check, what, info.drive->amplitude, kMaxRelativeDifferenceOfBed,
                     info.scale.pixels_per_sigma.value_or(1e9));
   try {
     std::vector<double> heights = {0};

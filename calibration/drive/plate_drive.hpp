@@ -18,17 +18,22 @@ namespace twincell::calibration {
 /// the frames per cycle.
 bool lacks_drive(const imaging::CellDescription& cell, bool phases = true);
 
-/// Completes the drive of the cell from the plate's edge in every frame (cell_geometry.hpp, drive_fit.hpp). A
+/// A cell with its drive, and the values measured for it.
+struct CompletedDrive {
+  imaging::CellDescription cell;
+  std::string measured;  ///< the measured values as one sentence; empty if the cell stated them all
+};
+
+/// Completes the drive of a cell from the plate's edge in every frame (cell_geometry.hpp, drive_fit.hpp). A
 /// comes from the plate's amplitude and the scale. omega comes from the frame rate and t0, unless the cell
 /// states omega, a frequency or a strength that gives it. Frames per cycle, first phase and offset come from
 /// the fit if `phases` are wanted. Values that the cell states are kept.
 /// \param range the frames of the stack that are read, and to which the phases of the cell refer
-/// \return the measured values as one sentence
 /// \throws ConfigError naming the key that is still missing and why it could not be measured; InputError if
 /// no moving plate is detected
-std::string complete_drive(imaging::CellDescription& cell, bool phases,
-                           const std::filesystem::path& cell_file, const std::filesystem::path& stack,
-                           const imaging::FrameRange& range, int threads, Progress& progress);
+CompletedDrive complete_drive(imaging::CellDescription cell, bool phases,
+                              const std::filesystem::path& cell_file, const std::filesystem::path& stack,
+                              const imaging::FrameRange& range, int threads, Progress& progress);
 
 /// Result of comparing the stated drive with the film.
 struct DriveCheck {
@@ -44,7 +49,7 @@ struct DriveCheck {
 /// "amplitude_error" or with "not_comparable", and "drive_disagreement" if there is one. `compare` refuses a
 /// trajectory with "drive_disagreement".
 void record(const DriveCheck& check, TrajectoryInfo& info);
-/// What record() has stored: how the drive in the film differs from the stated one, as a clause; empty if it
+/// The clause that record() has stored: how the drive in the film differs from the stated one; empty if it
 /// does not. No value if there was no check.
 std::optional<std::string> recorded_disagreement(const TrajectoryInfo& info);
 

@@ -12,7 +12,7 @@
 namespace twincell::calibration {
 namespace {
 
-constexpr double kEnough = 0.999;  // share of the variance
+constexpr double kExplainedShare = 0.999;  // of the variance, after which no form is added
 
 bool finite(const std::vector<double>& curve) {
   return std::all_of(curve.begin(), curve.end(), [](double v) { return std::isfinite(v); });
@@ -64,7 +64,7 @@ CurveComponents components_of(const std::vector<std::vector<double>>& curves, st
   CurveComponents out;
   out.mean.assign(mean.data(), mean.data() + columns);
   double left = share.sum();
-  const double enough = (1 - kEnough) * left;
+  const double enough = (1 - kExplainedShare) * left;
   for (Eigen::Index i = 0; i < share.size() && out.forms.size() < std::max<std::size_t>(most, 1); ++i) {
     if (i > 0 && left <= enough) break;
     const Eigen::VectorXd form = svd.matrixV().col(i);

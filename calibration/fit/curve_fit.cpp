@@ -13,16 +13,16 @@
 
 #include "calibration/fit/chi_square.hpp"
 #include "core/constants.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
+#include "core/plural.hpp"
 
 namespace twincell::calibration {
 namespace {
 
-constexpr double kSuspicious = 0.05;
-constexpr double kCorrelated = 0.99;
+constexpr double kSignificance = 0.05;    // probability below which a deviation is not chance
+constexpr double kMaxCorrelation = 0.99;  // of two parameters
 /// A residual sum of squares below this share of the ordinates' sum of squares is rounding error.
-constexpr double kExact = 1e-26;
+constexpr double kExactFitShare = 1e-26;
 
 /// A frequency of counts, zeros included.
 struct Frequency {
@@ -75,20 +75,20 @@ Selected select(const Law& law, const std::vector<DataPoint>& points, const FitW
     if (use != PointUse::used) continue;
     const double error = error_of(p, law.logarithmic);
     errors = errors && error > 0;
-    constexpr double kMost = 1e150;
-    if (std::abs(p.x) > kMost || std::abs(p.y) > kMost)
+    constexpr double kMaxCoordinate = 1e150;
+    if (std::abs(p.x) > kMaxCoordinate || std::abs(p.y) > kMaxCoordinate)
       throw InputError({.file = {}, .key = "points"},
                        fmt::format("a point is at ({:g}, {:g}); both must be within +-{:g}, or their squares "
                                    "overflow",
-                                   p.x, p.y, kMost));
+                                   p.x, p.y, kMaxCoordinate));
     selected.points.push_back({p.x, law.logarithmic ? std::log(p.y) : p.y, error});
     largest_x = std::max(largest_x, std::abs(p.x));
     largest_y = std::max(largest_y, std::abs(selected.points.back().y));
   }
   // All of them so small that their squares are 0 would give errors of 0.
-  constexpr double kLeast = 1e-150;
+  constexpr double kMinCoordinate = 1e-150;
   if (const double largest = std::min(largest_x > 0 ? largest_x : 1, largest_y > 0 ? largest_y : 1);
-      largest < kLeast)
+      largest < kMinCoordinate)
     throw InputError(
         {.file = {}, .key = "points"},
         fmt::format("no {} is larger than {:g} in magnitude; use another unit, or the squares are 0",
@@ -115,9 +115,9 @@ Selected select(const Law& law, const std::vector<DataPoint>& points, const FitW
   if (abscissas.size() < std::min<std::size_t>(2, needed) || selected.points.size() < needed)
     throw InputError(
         {.file = {}, .key = "points"},
-        fmt::format("{} at {} cannot determine the {} of {}; {}", counted(selected.points.size(), "point"),
-                    abscissas.size() == 1 ? "one abscissa" : counted(abscissas.size(), "abscissa"),
-                    counted(needed, "parameter"), law.name, data));
+        fmt::format("{} at {} cannot determine the {} of {}; {}", plural(selected.points.size(), "point"),
+                    abscissas.size() == 1 ? "one abscissa" : plural(abscissas.size(), "abscissa"),
+                    plural(needed, "parameter"), law.name, data));
   return selected;
 }
 
@@ -148,8 +148,8 @@ FitReport best_of_starts(const Law& law, const Selected& selected) {
 
 /// ln p of a frequency by the law. A probability of 1 is approached, not reached.
 double log_probability(const Law& law, const Frequency& f, const std::vector<double>& parameters) {
-  constexpr double kMostLog = -1e-9;
-  return std::min(law.value(f.x, parameters.data()), kMostLog);
+  constexpr double kMaxLog = -1e-9;
+  return std::min(law.value(f.x, parameters.data()), kMaxLog);
 }
 
 /// Logarithm of the binomial likelihood, up to a constant.
@@ -206,7 +206,7 @@ bool maximise_likelihood(const Law& law, Selected& selected, FitReport& report) 
 /// The highest maximum that is reached from `report` and from the starts of the law: the likelihood of a bent
 /// line has one between any two points, and a kink at every point. \returns whether one was reached
 bool best_likelihood(const Law& law, Selected& selected, FitReport& report) {
-  constexpr std::size_t kMostStarts = 8;
+  constexpr std::size_t kMaxStarts = 8;
   std::vector<std::vector<double>> starts = law.starts(selected.points);
   std::vector<std::pair<double, std::size_t>> ranked;
   for (std::size_t k = 0; k < starts.size(); ++k) {
@@ -214,7 +214,7 @@ bool best_likelihood(const Law& law, Selected& selected, FitReport& report) {
     if (std::isfinite(likelihood)) ranked.emplace_back(-likelihood, k);
   }
   std::sort(ranked.begin(), ranked.end());
-  ranked.resize(std::min(ranked.size(), kMostStarts));
+  ranked.resize(std::min(ranked.size(), kMaxStarts));
   std::vector<std::vector<double>> tried = {report.values};
   for (const auto& [rank, k] : ranked) tried.push_back(starts[k]);
   std::optional<std::pair<FitReport, Selected>> best;
@@ -292,11 +292,11 @@ void compare_with_nested(CurveFit& result, const Selected& selected) {
   const Law& simple = law_named(law.nested);
   const FitReport nested = best_of_starts(simple, selected);
   const std::size_t n = selected.points.size(), parameters = law.parameters.size();
-  const bool exact = nested.cost_after <= kExact * squares_of(selected);
+  const bool exact = nested.cost_after <= kExactFitShare * squares_of(selected);
   result.p_nested = exact ? 1
                           : chance_of_gain(2 * nested.cost_after, 2 * result.fit.cost_after, n, parameters,
                                            parameters - simple.parameters.size(), result.weighted);
-  if (!(result.p_nested > kSuspicious)) return;
+  if (!(result.p_nested > kSignificance)) return;
   for (const std::string& name : law.lost)
     if (std::find(result.fit.undetermined.begin(), result.fit.undetermined.end(), name) ==
         result.fit.undetermined.end())
@@ -354,7 +354,7 @@ void add_intervals(CurveFit& result, const Selected& selected) {
   if (result.law->squares_bent_at && fit.values.back() > 0)
     result.intervals.back() = interval_of_bend(result, selected, reach);
   // Data without scatter would give undetermined parameters an error of 0, so they get no interval.
-  if (!result.weighted && result.fit.cost_after <= kExact * squares_of(selected))
+  if (!result.weighted && result.fit.cost_after <= kExactFitShare * squares_of(selected))
     for (std::size_t p = 0; p < fit.values.size(); ++p)
       if (std::find(fit.undetermined.begin(), fit.undetermined.end(), fit.names[p]) != fit.undetermined.end())
         result.intervals[p].reset();
@@ -369,7 +369,7 @@ void add_notes(CurveFit& result, const Selected& selected) {
   for (Eigen::Index a = 0; a < fit.covariance.rows(); ++a)
     for (Eigen::Index b = a + 1; b < fit.covariance.cols(); ++b) {
       const double r = fit.covariance(a, b) / std::sqrt(fit.covariance(a, a) * fit.covariance(b, b));
-      if (std::abs(r) > kCorrelated)
+      if (std::abs(r) > kMaxCorrelation)
         result.notes.push_back(
             fmt::format("{} and {} are correlated ({:.4f}): compare curves, not coefficients",
                         fit.names[static_cast<std::size_t>(a)], fit.names[static_cast<std::size_t>(b)], r));
@@ -381,7 +381,7 @@ void add_notes(CurveFit& result, const Selected& selected) {
         fmt::format("the curve misses the points by more than their stated errors: chi^2 = {:.3g} of {:g}; "
                     "the intervals hold only for a law that describes the points",
                     chi2, freedom));
-  if (result.runs.p < kSuspicious)
+  if (result.runs.p < kSignificance)
     result.notes.push_back(fmt::format(
         "residuals are not in random order: {} runs of {} above and {} below the curve (p = {:.2g})",
         result.runs.runs, result.runs.positive, result.runs.negative, result.runs.p));

@@ -19,7 +19,7 @@ struct DataPoint {
   double x = 0;
   double y = 0;
   double sigma = 0;   ///< standard deviation of y; 0: unknown
-  double trials = 0;  ///< number of trials if y is a frequency (bead-periods of p_s); 0: y is no frequency
+  double trials = 0;  ///< number of trials if y is a frequency (bead-periods of p_s); 0: y is not a frequency
 };
 
 /// Window of the abscissa, both ends included.

@@ -138,7 +138,7 @@ double FitReport::standard_error(const std::string& name) const {
 
 namespace {
 
-constexpr int kMostIterations = 2000;
+constexpr int kMaxIterations = 2000;
 constexpr double kTolerance = 1e-15;
 
 /// Reason in the program's own words, because Ceres's messages contain memory addresses.
@@ -149,7 +149,7 @@ std::string why_stopped(const ceres::Solver::Summary& summary) {
           "The relative change of the sum of squares, its gradient or the parameters fell below {:g}.",
           kTolerance);
     case ceres::NO_CONVERGENCE:
-      return fmt::format("The fit had not converged after {} iterations.", kMostIterations);
+      return fmt::format("The fit had not converged after {} iterations.", kMaxIterations);
     default:
       return "No step lowers the sum of squares, or the law has no finite value there.";
   }
@@ -164,7 +164,7 @@ FitReport solve(ceres::Problem& problem, double* parameters, const std::vector<s
   options.minimizer_progress_to_stdout = false;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;
-  options.max_num_iterations = kMostIterations;
+  options.max_num_iterations = kMaxIterations;
   options.function_tolerance = kTolerance;
   options.gradient_tolerance = kTolerance;
   options.parameter_tolerance = kTolerance;

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "core/constants.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
+#include "core/plural.hpp"
 
 namespace twincell::calibration {
 
@@ -18,10 +18,6 @@ constexpr std::array<const char*, 4> kUses = {"used", "zero", "outside", "invali
 
 const char* use_name(PointUse use) {
   return kUses[static_cast<std::size_t>(use)];
-}
-
-nlohmann::json number(double v) {
-  return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr);
 }
 
 std::vector<DataPoint> points_of(const Table& table, FitColumns& o) {
@@ -74,7 +70,7 @@ void check_frequencies(const std::string& file, const std::vector<DataPoint>& po
                                    i + 1, points[i].y));
 }
 
-/// A frequency of no trials says nothing, whatever number stands there. \returns the number of such rows
+/// Leaves out the frequencies of 0 trials, which carry no information. \returns the number of such rows
 std::size_t leave_out_untried(std::vector<DataPoint>& points) {
   std::size_t untried = 0;
   for (DataPoint& p : points)
@@ -111,11 +107,11 @@ nlohmann::json json_of(const CurveFit& fit, const std::vector<DataPoint>& points
   j["law"] = {{"name", fit.law->name}, {"formula", fit.law->formula}, {"source", fit.law->source}};
   for (std::size_t p = 0; p < report.values.size(); ++p) {
     nlohmann::json& one = j["parameters"][report.names[p]];
-    one["value"] = number(report.values[p]);
+    one["value"] = number_or_null(report.values[p]);
     if (!fit.intervals[p]) continue;
-    one["standard_error"] = number(report.standard_errors[p]);
-    one["interval"] = {{"low", number(fit.intervals[p]->low)},
-                       {"high", number(fit.intervals[p]->high)},
+    one["standard_error"] = number_or_null(report.standard_errors[p]);
+    one["interval"] = {{"low", number_or_null(fit.intervals[p]->low)},
+                       {"high", number_or_null(fit.intervals[p]->high)},
                        {"level", fit.intervals[p]->level},
                        {"method", fit.intervals[p]->method}};
   }
@@ -124,30 +120,31 @@ nlohmann::json json_of(const CurveFit& fit, const std::vector<DataPoint>& points
   for (Eigen::Index r = 0; r < report.covariance.rows(); ++r) {
     j["covariance"].push_back(nlohmann::json::array());
     for (Eigen::Index c = 0; c < report.covariance.cols(); ++c)
-      j["covariance"].back().push_back(number(report.covariance(r, c)));
+      j["covariance"].back().push_back(number_or_null(report.covariance(r, c)));
   }
   j["weighted"] = fit.weighted;
   j["likelihood"] = fit.likelihood;
   j["n"] = {
       {"used", fit.n_used}, {"zero", fit.n_zero}, {"outside", fit.n_outside}, {"invalid", fit.n_invalid}};
   j["upper_limits"] = fit.upper_limits;
-  j["correlation"] = number(fit.correlation);
-  j["rms_residual"] = number(report.rms());
+  j["correlation"] = number_or_null(fit.correlation);
+  j["rms_residual"] = number_or_null(report.rms());
   j["runs"] = {{"runs", fit.runs.runs},
                {"positive", fit.runs.positive},
                {"negative", fit.runs.negative},
-               {"p", number(fit.runs.p)}};
-  if (!fit.law->nested.empty()) j["nested"] = {{"law", fit.law->nested}, {"p", number(fit.p_nested)}};
-  j["condition"] = number(report.condition);
+               {"p", number_or_null(fit.runs.p)}};
+  if (!fit.law->nested.empty()) j["nested"] = {{"law", fit.law->nested}, {"p", number_or_null(fit.p_nested)}};
+  j["condition"] = number_or_null(report.condition);
   j["undetermined"] = report.undetermined;
   j["stop_reason"] = report.stop_reason;
   j["notes"] = fit.notes;
   j["points"] = nlohmann::json::array();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    nlohmann::json point = {
-        {"x", number(points[i].x)}, {"y", number(points[i].y)}, {"use", use_name(fit.use[i])}};
+    nlohmann::json point = {{"x", number_or_null(points[i].x)},
+                            {"y", number_or_null(points[i].y)},
+                            {"use", use_name(fit.use[i])}};
     if (fit.use[i] == PointUse::used || (fit.likelihood && fit.use[i] == PointUse::zero))
-      point["fit"] = number(fit.at(points[i].x));
+      point["fit"] = number_or_null(fit.at(points[i].x));
     j["points"].push_back(point);
   }
   return j;
@@ -171,7 +168,7 @@ TableFit fit_table(const Table& table, const std::string& law, FitColumns column
   if (!columns.trials.empty()) check_frequencies(table.file, points, columns);
   const std::size_t untried = columns.trials.empty() ? 0 : leave_out_untried(points);
   CurveFit fit = fit_of(law_named(law), table.file, points, window);
-  if (untried > 0) fit.notes.push_back(fmt::format("{} without trials left out", counted(untried, "row")));
+  if (untried > 0) fit.notes.push_back(fmt::format("{} without trials left out", plural(untried, "row")));
   if (!fit.weighted && !(columns.sigma.empty() && columns.trials.empty()))
     fit.notes.push_back(why_not_weighted(fit, points));
   return {std::move(fit), std::move(points), std::move(columns)};

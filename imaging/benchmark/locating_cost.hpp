@@ -50,7 +50,7 @@ struct LocatePrecision {
 };
 
 /// Measures all settings on the same pictures. Within a round the settings take turns, so that other load on
-/// the machine affects all of them alike. The fastest of `rounds` counts.
+/// the machine affects all of them equally. The fastest of `rounds` counts.
 std::vector<LocatePrecision> locate_precision(const std::vector<LocateSetting>& settings,
                                               const LocateScene& scene, int rounds,
                                               Progress& progress = Progress::none());

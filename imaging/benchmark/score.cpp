@@ -19,23 +19,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells;
-  std::stringstream in(line);
-  for (std::string cell; std::getline(in, cell, ',');) {
-    while (!cell.empty() && cell.back() == ' ') cell.pop_back();
-    cells.push_back(cell);
-  }
-  return cells;
-}
-
 /// A table with named columns.
 class Table {
  public:
   explicit Table(const fs::path& file) : file_(file), in_(read_table_text(file)) {
     std::string line;
     std::getline(in_, line);
-    const std::vector<std::string> names = split(line);
+    const std::vector<std::string> names = field_texts(line);
     check_column_names(names, {.file = file.string(), .line = 1, .key = {}});
     for (std::size_t i = 0; i < names.size(); ++i) column_[names[i]] = i;
     width_ = names.size();
@@ -49,7 +39,7 @@ class Table {
       if (!std::getline(in_, line)) return false;
       ++line_;
     } while (line.empty());
-    row_ = split(line);
+    row_ = field_texts(line);
     if (row_.size() != width_)
       throw InputError(Where{.file = file_.string(), .line = line_, .key = {}},
                        "has a different number of cells from the header row.");

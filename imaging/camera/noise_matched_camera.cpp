@@ -10,7 +10,7 @@ namespace twincell::imaging {
 
 CameraOptions with_noise_of(FrameSource& stack, double diameter_px, bool bright, CameraOptions camera) {
   constexpr int kFrames = 3;
-  constexpr double kMostReadNoise = 50, kFewestElectrons = 0.1, kMostElectrons = 1e9;
+  constexpr double kMaxReadNoise = 50, kMinElectrons = 0.1, kMaxElectrons = 1e9;
   double dark = 0, light = 0;
   int n = 0;
   cv::Mat frame;
@@ -34,9 +34,9 @@ CameraOptions with_noise_of(FrameSource& stack, double diameter_px, bool bright,
   const double counted = std::pow(2.0, 8 - camera.bits);
   const double read = dark / n * levels * levels - counted * counted / 12;
   camera.bright = bright;
-  camera.read_noise = std::min(kMostReadNoise, std::sqrt(std::max(0.0, read)));
+  camera.read_noise = std::min(kMaxReadNoise, std::sqrt(std::max(0.0, read)));
   camera.electrons_per_level =
-      light > 0 ? std::clamp(n / (light * levels), kFewestElectrons, kMostElectrons) : 0;  // 0: no shot noise
+      light > 0 ? std::clamp(n / (light * levels), kMinElectrons, kMaxElectrons) : 0;  // 0: no shot noise
   return camera;
 }
 

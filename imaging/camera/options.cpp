@@ -14,7 +14,7 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr double kMostReduced = 1e6, kMostPhysical = 1e9;
+constexpr double kMaxReduced = 1e6, kMaxPhysical = 1e9;
 
 /// Adds the three spellings of a length or time: without a unit, in reduced units, and in laboratory units.
 /// \param in_reduced, in_physical examples
@@ -23,7 +23,7 @@ void add_quantity(std::vector<CameraOption>& list, const std::string& key, const
                   const char* physical, const char* in_physical, bool both_ways = false) {
   const auto spelling = [&](const std::string& name, const char* symbol, const char* example,
                             const std::string& text, CameraUnit means) {
-    const double most = means == CameraUnit::physical ? kMostPhysical : kMostReduced;
+    const double most = means == CameraUnit::physical ? kMaxPhysical : kMaxReduced;
     list.push_back({name, symbol, example, text, &value, both_ways ? -most : 0, most, {}, &unit, means});
   };
   const bool length = std::string_view(reduced) == "sigma";

@@ -24,10 +24,10 @@ double poisson(double mean, RandomStream& chance) {
 // A grey level with noise. Many electrons are normally distributed; as the sum of two normal numbers is
 // normal, shot and read noise then take one random number.
 double noisy(double level, const CameraOptions& o, RandomStream& chance) {
-  constexpr double kMany = 50;
+  constexpr double kMaxPoissonElectrons = 50;
   const double electrons = level * o.electrons_per_level;
   double variance = o.read_noise * o.read_noise;
-  if (electrons > kMany)
+  if (electrons > kMaxPoissonElectrons)
     variance += level / o.electrons_per_level;
   else if (electrons > 0)
     level = poisson(electrons, chance) / o.electrons_per_level;

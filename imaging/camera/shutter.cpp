@@ -13,7 +13,7 @@ namespace {
 
 // Fewest frames per period that can be interpolated without velocities. Beads in a stroboscopic stack of one
 // frame per cycle would seem to stand still.
-constexpr int kFewestPhases = 8;
+constexpr int kMinPhases = 8;
 
 bool has(const Frame* frame, std::size_t slot) {
   return frame != nullptr && frame->present(slot) && std::isfinite(frame->position[slot].x());
@@ -32,15 +32,15 @@ Shutter::Shutter(const TrajectoryInfo& info)
     : velocities_(info.columns.velocity),
       drive_(info.drive),
       phases_per_cycle_(info.phases_per_cycle),
-      longest_gap_(info.drive ? info.drive->period() / kFewestPhases * 1.000001
+      longest_gap_(info.drive ? info.drive->period() / kMinPhases * 1.000001
                               : std::numeric_limits<double>::infinity()) {}
 
 void Shutter::require_paths(const TrajectoryInfo& info, const char* option) {
-  if (!info.columns.velocity && info.phases_per_cycle > 0 && info.phases_per_cycle < kFewestPhases)
+  if (!info.columns.velocity && info.phases_per_cycle > 0 && info.phases_per_cycle < kMinPhases)
     throw ConfigError(Where{.file = {}, .key = option},
                       fmt::format("needs the paths of beads, but the trajectory has no velocities and only "
                                   "{} frames per cycle; at least {} are needed.",
-                                  info.phases_per_cycle, kFewestPhases));
+                                  info.phases_per_cycle, kMinPhases));
 }
 
 Vec3 Shutter::position(const Exposure& exposure, std::size_t slot, double tau) const {

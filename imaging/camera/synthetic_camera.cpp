@@ -179,80 +179,103 @@ void SyntheticCamera::draw_leaning_walls(const Exposure& exposure, cv::Mat1f& sh
     }
 }
 
-cv::Mat1f SyntheticCamera::light(const Exposure& exposure) const {
-  // Discs: each is stamped into its own window, averaged over its path.
-  const Frame& frame = *exposure.now;
-  cv::Mat1f share(size_, 1.0F), glow;
-  if (options_.glare > 0) glow = cv::Mat1f::zeros(size_);
+/// The image of one bead in its own window of the picture.
+struct SyntheticCamera::Stamp {
+  cv::Rect window;
+  Discs::Sized disc{};
+  double radius_px = 0;       // in the ideal picture
+  double magnification = 1;   // by the distortion
+  bool has_spot = false;      // a bright spot
+  std::vector<float> shares;  // of the window's pixels that the disc covers, averaged over its path
+};
+
+double SyntheticCamera::path_length_px(const Exposure& exposure, std::size_t slot) const {
   const double e = options_.exposure;
-  const bool bent = options_.distortion != 0;
-  std::vector<float> stamp;
-  for (std::size_t k = 0; k < info_.n_beads; ++k) {
-    if (!frame.present(k) || !std::isfinite(frame.position[k].x())) continue;
-    const double radius = radius_px(k);
-    const auto depth =
-        static_cast<float>(!info_.tracer.empty() && info_.tracer[k] != 0 ? options_.tracer_darkness : 1);
-    const Vec3 here = place(exposure, k, 0);
-    double length = 0;
-    if (e > 0)
-      length = options_.pixels_per_sigma * ((shutter_.position(exposure, k, exposure.late + 0.5 * e) -
-                                             shutter_.position(exposure, k, exposure.late))
-                                                .norm() +
-                                            (shutter_.position(exposure, k, exposure.late - 0.5 * e) -
-                                             shutter_.position(exposure, k, exposure.late))
-                                                .norm());
-    const auto nodes = exposure_times(e, length);
-    const double magnification = lens_->magnification(map_.pixel_from_cell(here));
-    const Discs::Sized disc = discs_->of(radius * magnification);
-    const PixelPoint middle = lens_->picture_from_ideal(map_.pixel_from_cell(here));
-    const double reach = disc.reach() * (bent ? 1.1 : 1) + 1 + length;
-    const cv::Rect window =
-        cv::Rect(cv::Point(cvFloor(middle.x_px - reach), cvFloor(middle.y_px - reach)),
-                 cv::Point(cvCeil(middle.x_px + reach) + 1, cvCeil(middle.y_px + reach) + 1)) &
-        cv::Rect({}, size_);
-    if (window.empty()) continue;
-    stamp.assign(static_cast<std::size_t>(window.area()), 0);
-    const bool shines = options_.glare > 0 &&
-                        RandomStream(options_.seed, Chance::glare, static_cast<std::int64_t>(k)).uniform() <
-                            options_.glare_share;
-    const bool reflected = options_.glare_kind == "reflected";
-    const double off = reflected ? -0.35 * radius : 0, spot = (reflected ? 0.13 : 0.25) * radius,
-                 spot_reach = 4 * spot;
-    for (const auto& [tau, weight] : nodes) {
-      Vec3 at = shutter_.position(exposure, k, exposure.late + tau);
-      at.x() += here.x() -
-                shutter_.position(exposure, k, exposure.late).x();  // one periodic image for the whole path
-      const PixelPoint ideal = map_.pixel_from_cell(at), c = lens_->picture_from_ideal(ideal);
-      const auto w = static_cast<float>(weight);
-      std::size_t i = 0;
-      for (int y = window.y; y < window.y + window.height; ++y)
-        for (int x = window.x; x < window.x + window.width; ++x, ++i) {
-          const double dx = x - c.x_px, dy = y - c.y_px;
-          double r = 0;
-          if (bent) {
-            const cv::Vec2d& q = ideal_(y, x);
-            r = magnification * std::sqrt((q[0] - ideal.x_px) * (q[0] - ideal.x_px) +
-                                          (q[1] - ideal.y_px) * (q[1] - ideal.y_px));
-          } else {
-            r = std::sqrt(dx * dx + dy * dy);
-          }
-          stamp[i] += w * disc.at(dx, dy, r);
-          if (shines && std::abs(dx - off) < spot_reach && std::abs(dy - off) < spot_reach)
-            glow(y, x) +=
-                w * static_cast<float>(
-                        options_.glare *
-                        std::exp(-0.5 * ((dx - off) * (dx - off) + (dy - off) * (dy - off)) / (spot * spot)));
-        }
+  if (!(e > 0)) return 0;
+  return options_.pixels_per_sigma * ((shutter_.position(exposure, slot, exposure.late + 0.5 * e) -
+                                       shutter_.position(exposure, slot, exposure.late))
+                                          .norm() +
+                                      (shutter_.position(exposure, slot, exposure.late - 0.5 * e) -
+                                       shutter_.position(exposure, slot, exposure.late))
+                                          .norm());
+}
+
+bool SyntheticCamera::has_bright_spot(std::size_t slot) const {
+  return options_.glare > 0 &&
+         RandomStream(options_.seed, Chance::glare, static_cast<std::int64_t>(slot)).uniform() <
+             options_.glare_share;
+}
+
+void SyntheticCamera::add_to_stamp(const Vec3& at, float weight, Stamp& stamp, cv::Mat1f& glow) const {
+  // Local copies: the stores do not change them, which the compiler cannot know.
+  const cv::Rect window = stamp.window;
+  const Discs::Sized disc = stamp.disc;
+  const double magnification = stamp.magnification;
+  const bool bent = options_.distortion != 0, has_spot = stamp.has_spot;
+  const bool reflected = options_.glare_kind == "reflected";
+  const double off = reflected ? -0.35 * stamp.radius_px : 0,
+               spot = (reflected ? 0.13 : 0.25) * stamp.radius_px, spot_reach = 4 * spot;
+  const PixelPoint ideal = map_.pixel_from_cell(at), c = lens_->picture_from_ideal(ideal);
+  float* share = stamp.shares.data();
+  for (int y = window.y; y < window.y + window.height; ++y)
+    for (int x = window.x; x < window.x + window.width; ++x, ++share) {
+      const double dx = x - c.x_px, dy = y - c.y_px;
+      double r = 0;
+      if (bent) {
+        const cv::Vec2d& q = ideal_(y, x);
+        r = magnification *
+            std::sqrt((q[0] - ideal.x_px) * (q[0] - ideal.x_px) + (q[1] - ideal.y_px) * (q[1] - ideal.y_px));
+      } else {
+        r = std::sqrt(dx * dx + dy * dy);
+      }
+      *share += weight * disc.at(dx, dy, r);
+      if (has_spot && std::abs(dx - off) < spot_reach && std::abs(dy - off) < spot_reach)
+        glow(y, x) +=
+            weight * static_cast<float>(options_.glare *
+                                        std::exp(-0.5 * ((dx - off) * (dx - off) + (dy - off) * (dy - off)) /
+                                                 (spot * spot)));
     }
-    std::size_t i = 0;
-    // In two dimensions discs do not overlap and the blocked light adds up; in three it multiplies.
-    const bool flat = info_.box.dimension == 2;
-    for (int y = window.y; y < window.y + window.height; ++y) {
-      auto* row = share.ptr<float>(y);
-      for (int x = window.x; x < window.x + window.width; ++x, ++i)
-        row[x] = flat ? row[x] - depth * stamp[i] : row[x] * (1 - depth * stamp[i]);
-    }
+}
+
+void SyntheticCamera::block_light(const Stamp& stamp, float depth, cv::Mat1f& share) const {
+  // In two dimensions discs do not overlap and the blocked light adds up; in three it multiplies.
+  const bool flat = info_.box.dimension == 2;
+  const cv::Rect& window = stamp.window;
+  std::size_t i = 0;
+  for (int y = window.y; y < window.y + window.height; ++y) {
+    auto* row = share.ptr<float>(y);
+    for (int x = window.x; x < window.x + window.width; ++x, ++i)
+      row[x] = flat ? row[x] - depth * stamp.shares[i] : row[x] * (1 - depth * stamp.shares[i]);
   }
+}
+
+void SyntheticCamera::draw_bead(const Exposure& exposure, std::size_t slot, Stamp& stamp, cv::Mat1f& share,
+                                cv::Mat1f& glow) const {
+  const Vec3 here = place(exposure, slot, 0);
+  const double length = path_length_px(exposure, slot);
+  stamp.radius_px = radius_px(slot);
+  stamp.magnification = lens_->magnification(map_.pixel_from_cell(here));
+  stamp.disc = discs_->of(stamp.radius_px * stamp.magnification);
+  const PixelPoint middle = lens_->picture_from_ideal(map_.pixel_from_cell(here));
+  const double reach = stamp.disc.reach() * (options_.distortion != 0 ? 1.1 : 1) + 1 + length;
+  stamp.window = cv::Rect(cv::Point(cvFloor(middle.x_px - reach), cvFloor(middle.y_px - reach)),
+                          cv::Point(cvCeil(middle.x_px + reach) + 1, cvCeil(middle.y_px + reach) + 1)) &
+                 cv::Rect({}, size_);
+  if (stamp.window.empty()) return;
+  stamp.shares.assign(static_cast<std::size_t>(stamp.window.area()), 0);
+  stamp.has_spot = has_bright_spot(slot);
+  for (const auto& [tau, weight] : exposure_times(options_.exposure, length)) {
+    Vec3 at = shutter_.position(exposure, slot, exposure.late + tau);
+    // One periodic image for the whole path.
+    at.x() += here.x() - shutter_.position(exposure, slot, exposure.late).x();
+    add_to_stamp(at, static_cast<float>(weight), stamp, glow);
+  }
+  const bool tracer = !info_.tracer.empty() && info_.tracer[slot] != 0;
+  block_light(stamp, static_cast<float>(tracer ? options_.tracer_darkness : 1), share);
+}
+
+void SyntheticCamera::add_cell_and_lamp(const Exposure& exposure, const cv::Mat1f& glow,
+                                        cv::Mat1f& share) const {
   // Walls and plate: beads do not overlap them, so what they block adds up. A product of blurred shapes would
   // be too bright where a bead touches a wall, because the blur acts on the picture as a whole.
   cv::Mat1f cell(size_, 1.0F);
@@ -267,6 +290,16 @@ cv::Mat1f SyntheticCamera::light(const Exposure& exposure) const {
       if (!glow.empty()) left += glow(y, x);
       share(y, x) = lamp * backlight_(y, x) * left;
     }
+}
+
+cv::Mat1f SyntheticCamera::light(const Exposure& exposure) const {
+  const Frame& frame = *exposure.now;
+  cv::Mat1f share(size_, 1.0F), glow;
+  if (options_.glare > 0) glow = cv::Mat1f::zeros(size_);
+  Stamp stamp;  // of one bead after the other, so that its memory is allocated once
+  for (std::size_t k = 0; k < info_.n_beads; ++k)
+    if (frame.present(k) && std::isfinite(frame.position[k].x())) draw_bead(exposure, k, stamp, share, glow);
+  add_cell_and_lamp(exposure, glow, share);
   return share;
 }
 

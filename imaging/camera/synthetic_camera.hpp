@@ -66,10 +66,24 @@ class SyntheticCamera {
 
  private:
   class Discs;
+  struct Stamp;
   /// Darkens the area of tilted walls, whose feet move with the plate.
   void draw_leaning_walls(const Exposure& exposure, cv::Mat1f& share) const;
   void draw_plate(const Exposure& exposure, cv::Mat1f& share) const;
   [[nodiscard]] Vec3 place(const Exposure& exposure, std::size_t slot, double tau) const;
+  /// Length of a bead's path during the exposure, px.
+  [[nodiscard]] double path_length_px(const Exposure& exposure, std::size_t slot) const;
+  [[nodiscard]] bool has_bright_spot(std::size_t slot) const;
+  /// Multiplies the share of light of each pixel by what the bead transmits, and adds its bright spot to the
+  /// glow. \param stamp reused memory
+  void draw_bead(const Exposure& exposure, std::size_t slot, Stamp& stamp, cv::Mat1f& share,
+                 cv::Mat1f& glow) const;
+  /// Adds the disc at one position of its path, with a weight, to the stamp, and its bright spot to the glow.
+  void add_to_stamp(const Vec3& at, float weight, Stamp& stamp, cv::Mat1f& glow) const;
+  /// \param depth share of the light that the disc absorbs
+  void block_light(const Stamp& stamp, float depth, cv::Mat1f& share) const;
+  /// Turns the share of light that the beads transmit into grey levels: walls, plate, glow, lamp.
+  void add_cell_and_lamp(const Exposure& exposure, const cv::Mat1f& glow, cv::Mat1f& share) const;
 
   CameraOptions options_;
   TrajectoryInfo info_;

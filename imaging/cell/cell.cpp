@@ -19,6 +19,19 @@ std::optional<Drive> CellDescription::drive() const {
   return solved;
 }
 
+ShakenCell CellDescription::shaken_cell() const {
+  ShakenCell numbers;
+  if (scale.sigma_m) numbers.sigma_mm = *scale.sigma_m * 1e3;
+  numbers.gamma = drive_spec.gamma;
+  numbers.gravity_m_s2 = scale.gravity_m_s2;
+  if (!is_whole(drive_spec)) return numbers;  // the film gives the rest
+  const std::optional<Drive> stated = drive();
+  if (!stated) return numbers;
+  numbers.gamma = stated->gamma();
+  if (const auto t0 = scale.t0_s()) numbers.frequency_hz = stated->omega / (2 * std::numbers::pi * *t0);
+  return numbers;
+}
+
 PixelFrame CellDescription::pixel_frame(cv::Size picture, double scale_px, PixelPoint zero) const {
   PixelFrame frame{scale_px, zero};
   if (rotation_deg != 0 || distortion != 0) frame.lens = Lens(picture, rotation_deg, distortion);
@@ -40,7 +53,7 @@ std::optional<Boundary> sides_in(const ConfigSection& box) {
 }  // namespace
 
 CellDescription read_cell(const std::filesystem::path& path, const std::vector<std::string>& assignments) {
-  constexpr std::int64_t kMostPhases = 100000;
+  constexpr std::int64_t kMaxPhases = 100000;
   constexpr double kLongest = 1e6;  // sigma, as in a scene; a trajectory file holds no longer cells
   Config config = path.empty() ? Config::from_text("", "the command line") : Config::from_file(path);
   // Assignments are applied before units are converted, so that an assigned spelling replaces another
@@ -60,9 +73,8 @@ CellDescription read_cell(const std::filesystem::path& path, const std::vector<s
   if (const auto origin = numbers_in(camera, "origin_px", 2, -kFarthest_px, kFarthest_px))
     cell.origin = PixelPoint{(*origin)[0], (*origin)[1]};
   cell.phase_lock.frames_per_cycle =
-      static_cast<int>(camera.integer_in("frames_per_cycle", 0, kMostPhases).value_or(0));
-  cell.phase_lock.first_phase =
-      static_cast<int>(camera.integer_in("first_phase", 0, kMostPhases).value_or(0));
+      static_cast<int>(camera.integer_in("frames_per_cycle", 0, kMaxPhases).value_or(0));
+  cell.phase_lock.first_phase = static_cast<int>(camera.integer_in("first_phase", 0, kMaxPhases).value_or(0));
   cell.phase_lock.check(camera.where("first_phase"));
   cell.phase_lock.offset = camera.number_in("phase_offset", -1, 1).value_or(0);
   cell.rotation_deg = camera.number_in("rotation_deg", -180, 180).value_or(0);

@@ -43,6 +43,7 @@
 #include "trajectory/box.hpp"
 #include "trajectory/calibration_file.hpp"
 #include "trajectory/drive.hpp"
+#include "trajectory/unit_checks.hpp"
 #include "trajectory/units.hpp"
 
 namespace twincell::imaging {
@@ -74,6 +75,8 @@ struct CellDescription {
   [[nodiscard]] PixelFrame pixel_frame(cv::Size picture, double scale_px, PixelPoint zero) const;
   /// A, omega and the harmonics; absent if no drive is stated. \throws ConfigError as solve_drive
   [[nodiscard]] std::optional<Drive> drive() const;
+  /// The numbers whose units can be checked, as far as they are stated (trajectory/unit_checks.hpp).
+  [[nodiscard]] ShakenCell shaken_cell() const;
 };
 
 /// Reads a CELL.toml and applies the assignments "section.key=value" to it. Without a file, only the

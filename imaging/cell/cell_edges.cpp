@@ -14,13 +14,13 @@
 namespace twincell::imaging {
 namespace {
 
-constexpr int kBorder = 3;     // px; width of the dark border that makes a wall
-constexpr int kBefore = 6;     // px; distance from its edges at which a wall shows its own level
-constexpr double kEdge = 3.2;  // half width of an edge, standard deviations of the blur
+constexpr int kBorder = 3;      // px; width of the dark border that makes a wall
+constexpr int kWallMargin = 6;  // px; distance from its edges at which a wall shows its own level
+constexpr double kEdge = 3.2;   // half width of an edge, standard deviations of the blur
 // A bead that transmits less than this share of the light hides the edge behind it. With 0.75 the edges of an
 // agitated bed filmed with an exposure were off by 0.01 px: each bead is smeared along its own path, and its
 // fitted disc is not.
-constexpr float kLeastShare = 0.97F;
+constexpr float kMinTransmission = 0.97F;
 
 /// A line of pixels from the border inwards.
 struct Line {
@@ -44,7 +44,7 @@ std::optional<Line> line_from_border(const cv::Mat1f& d, Border from, int number
     if (d(pixel_from(from, d.size(), number, i)) < 0.5F)
       return i < kBorder ? std::nullopt
                          : std::optional(Line{
-                               .from = from, .number = number, .light = i, .own = 0, .end = i - kBefore});
+                               .from = from, .number = number, .light = i, .own = 0, .end = i - kWallMargin});
   return std::nullopt;
 }
 
@@ -52,7 +52,7 @@ std::optional<Line> line_from_border(const cv::Mat1f& d, Border from, int number
 std::vector<Line> lines_from_bars(const cv::Mat1f& d, Border from, double diameter_px) {
   std::vector<Line> lines;
   for (const StraightBar& bar : straight_bars(d, from, diameter_px)) {
-    const int margin = std::clamp(bar.width / 3, 1, kBefore);
+    const int margin = std::clamp(bar.width / 3, 1, kWallMargin);
     for (const BarLine& line : bar.lines)
       lines.push_back({.from = from,
                        .number = line.number,
@@ -101,11 +101,11 @@ double normal_density(double x) {
 
 /// Share of the light that the beads transmit, from their fitted discs (ring_normal_equations.hpp).
 cv::Mat1f light_past_beads(const Located& located, cv::Size size) {
-  constexpr double kSeen = 4;  // standard deviations of the blur
+  constexpr double kReach = 4;  // beyond the rim, standard deviations of the blur
   cv::Mat1f share(size, 1.0F);
   const double s = located.blur_px;
   for (const Detection& bead : located.beads) {
-    const double reach = bead.radius + kSeen * s, edge = bead.radius - s * s / (2 * bead.radius);
+    const double reach = bead.radius + kReach * s, edge = bead.radius - s * s / (2 * bead.radius);
     const int left = std::max(0, cvCeil(bead.x - reach)),
               right = std::min(size.width - 1, cvFloor(bead.x + reach)),
               top = std::max(0, cvCeil(bead.y - reach)),
@@ -122,7 +122,8 @@ cv::Mat1f light_past_beads(const Located& located, cv::Size size) {
 /// surface that a pixel shows; 0 excludes the pixel.
 template <class Share>
 Surface surface_through(const Prepared& image, Surface start, const Share& share) {
-  constexpr double kWild = 0.1, kFewest = 60, kSamples = 30000;
+  constexpr double kMaxDeviation = 0.1;                // of a pixel from the surface, fraction of the light
+  constexpr double kMinPixels = 60, kSamples = 30000;  // pixels
   const cv::Mat1f& d = image.darkness;
   const int stride = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(d.total()) / kSamples)));
   for (int round = 0; round < 3; ++round) {
@@ -135,12 +136,12 @@ Surface surface_through(const Prepared& image, Surface start, const Share& share
         if (t <= 0) continue;
         const Surface at = surface_basis(x, y, d.size());
         const double light = image.light.dot(at), seen = (1 - static_cast<double>(d(y, x))) * light;
-        if (std::abs(seen - start.dot(at) * t) > kWild * light) continue;
+        if (std::abs(seen - start.dot(at) * t) > kMaxDeviation * light) continue;
         normal.noalias() += t * t * at * at.transpose();
         right += t * seen * at;
         ++n;
       }
-    if (n < kFewest) return start;
+    if (n < kMinPixels) return start;
     normal.diagonal().tail<5>().array() += 1e-4 * n;
     start = normal.ldlt().solve(right);
   }
@@ -151,7 +152,7 @@ Surface surface_through(const Prepared& image, Surface start, const Share& share
 /// are dense. Here it is fitted to the pixels visible past the beads, `inside` all edges.
 Surface light_inside(const Prepared& image, const cv::Mat1f& share, const cv::Mat1b& inside) {
   return surface_through(image, image.light, [&](int x, int y) {
-    return inside(y, x) == 0 || share(y, x) < kLeastShare ? 0 : share(y, x);
+    return inside(y, x) == 0 || share(y, x) < kMinTransmission ? 0 : share(y, x);
   });
 }
 
@@ -176,39 +177,39 @@ Surface light_of_walls(const Prepared& image, const std::vector<Line>& lines) {
 /// Whether the noise around black is clipped at zero. The mean of the walls is then too bright by a fraction
 /// of the noise, so that zero is used as their level.
 bool clipped_black(const cv::Mat1f& d, const std::vector<Line>& lines) {
-  constexpr double kShare = 0.2;
+  constexpr double kMinZeroShare = 0.2;  // of the pixels at the border of the walls
   double zeros = 0, n = 0;
   for (const Line& line : lines)
     for (int i = line.own; i < line.own + std::min(kBorder, line.light - line.own); ++i, ++n)
       if (d(pixel_from(line.from, d.size(), line.number, i)) >= 1) ++zeros;
-  return zeros > kShare * n;
+  return zeros > kMinZeroShare * n;
 }
 
 /// Pixels at least 4 px behind the first light pixel, seen from every side.
 cv::Mat1b inside_of(const std::vector<Line>& lines, const cv::Size& size) {
-  constexpr int kInside = 4;
+  constexpr int kMargin = 4;  // px
   cv::Mat1b inside(size, uchar{1});
   for (const Line& line : lines)
-    for (int i = 0; i < std::min(line_length(line.from, size), line.light + kInside); ++i)
+    for (int i = 0; i < std::min(line_length(line.from, size), line.light + kMargin); ++i)
       inside(pixel_from(line.from, size, line.number, i)) = 0;
   return inside;
 }
 
 /// Removes points close to a corner, where each edge takes light from the other.
 void leave_corners_out(CellEdges& edges, double reach) {
-  constexpr std::size_t kNear = 25;  // points that locate the other edge
+  constexpr std::size_t kCornerPoints = 25;  // nearest points of the other edge, which locate it
   const auto median = [](std::vector<double> v) {
     return v.empty() ? std::nan("") : upper_median(std::move(v));
   };
   const auto lowest = [&](const std::vector<EdgePoint>& wall) {  // column of a wall's foot
     std::vector<double> x;
-    for (std::size_t i = wall.size() - std::min(kNear, wall.size()); i < wall.size(); ++i)
+    for (std::size_t i = wall.size() - std::min(kCornerPoints, wall.size()); i < wall.size(); ++i)
       x.push_back(wall[i].at.x_px);
     return median(std::move(x));
   };
   const auto row_beside = [&](bool left) {
     std::vector<double> y;
-    const std::size_t n = std::min(kNear, edges.plate.size());
+    const std::size_t n = std::min(kCornerPoints, edges.plate.size());
     for (std::size_t i = 0; i < n; ++i)
       y.push_back(edges.plate[left ? i : edges.plate.size() - 1 - i].at.y_px);
     return median(std::move(y));
@@ -225,11 +226,11 @@ void leave_corners_out(CellEdges& edges, double reach) {
 /// Level of the background under front light, if it is black and clipped at zero: it is then exactly zero.
 /// Grey levels are counted from the brightest down, as prepare() inverts them.
 std::optional<Surface> clipped_background(const cv::Mat& grey, const cv::Mat1f& d) {
-  constexpr double kShare = 0.2;
-  constexpr float kClear = 0.15F;
-  const cv::Mat1b clear = d < kClear, zero = clear & (grey <= 0);
+  constexpr double kMinZeroShare = 0.2;  // of the pixels of the background
+  constexpr float kMaxBackgroundDarkness = 0.15F;
+  const cv::Mat1b clear = d < kMaxBackgroundDarkness, zero = clear & (grey <= 0);
   const double n = cv::countNonZero(clear);
-  if (cv::countNonZero(zero) <= kShare * n) return std::nullopt;
+  if (cv::countNonZero(zero) <= kMinZeroShare * n) return std::nullopt;
   double top = 0;
   cv::minMaxLoc(grey, nullptr, &top);
   Surface light = Surface::Zero();
@@ -241,22 +242,24 @@ std::optional<Surface> clipped_background(const cv::Mat& grey, const cv::Mat1f& 
 /// otherwise set the unit of darkness; they are cut a little above the brightest parts of these. \param image
 /// the frame, prepared
 cv::Mat without_highlights(const cv::Mat& grey, const Prepared& image) {
-  constexpr double kOfClass = 0.6, kNearlyAll = 0.9, kAbove = 1.15;
+  constexpr double kMinObjectLevel = 0.6;  // of beads and walls, fraction of the contrast
+  constexpr double kQuantile = 0.9;        // of these levels
+  constexpr double kCutLevel = 1.15;       // multiple of the quantile
   const double contrast = contrast_of(image.darkness);
   if (contrast == 1) return grey;
   std::vector<float> levels;
   for (const float d : cv::Mat1f(image.darkness.clone()))
-    if (static_cast<double>(d) > kOfClass * contrast) levels.push_back(d);
+    if (static_cast<double>(d) > kMinObjectLevel * contrast) levels.push_back(d);
   if (levels.empty()) return grey;
   const auto at =
-      levels.begin() + static_cast<std::ptrdiff_t>(kNearlyAll * static_cast<double>(levels.size()));
+      levels.begin() + static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(levels.size()));
   std::nth_element(levels.begin(), at, levels.end());
   double top = 0;
   cv::minMaxLoc(grey, nullptr, &top);
   const cv::Size size = grey.size();
   const double light = image.light.dot(surface_basis(0.5 * size.width, 0.5 * size.height, size));
   cv::Mat cut;
-  cv::min(grey, top - (1 - kAbove * static_cast<double>(*at)) * light, cut);
+  cv::min(grey, top - (1 - kCutLevel * static_cast<double>(*at)) * light, cut);
   return cut;
 }
 
@@ -274,7 +277,8 @@ struct Window {
 
 /// Fits l_i = Phi((i - e)/s) - D_i by Gauss-Newton steps in e, and in s if free_blur.
 std::optional<Step> fit_step(const Window& w, double start, double s, bool free_blur, double noise) {
-  constexpr double kLargestMisfit = 3.5, kModelError = 0.015;
+  constexpr double kMaxMisfit = 3.5;     // standard deviations of the noise
+  constexpr double kModelError = 0.015;  // fraction of the step
   double e = start;
   Eigen::Matrix2d normal;
   double squares = 0;
@@ -299,14 +303,15 @@ std::optional<Step> fit_step(const Window& w, double start, double s, bool free_
     if (delta.cwiseAbs().maxCoeff() < 1e-6) break;
   }
   const double freedom = static_cast<double>(w.light.size()) - (free_blur ? 2 : 1);
-  if (freedom < 2 || std::sqrt(squares / freedom) > kLargestMisfit * noise + kModelError) return std::nullopt;
+  if (freedom < 2 || std::sqrt(squares / freedom) > kMaxMisfit * noise + kModelError) return std::nullopt;
   return Step{e, s, std::sqrt(normal.inverse()(0, 0))};
 }
 
 }  // namespace
 
 CellEdges find_cell_edges(const cv::Mat& picture, bool bright, double diameter_px) {
-  constexpr double kCorner = 4.5, kUsualBlur = 0.9, kLargestBlur = 5, kLargestError = 0.12;
+  constexpr double kCornerReach = 4.5;                                // blurs
+  constexpr double kStartBlur = 0.9, kMaxBlur = 5, kMaxError = 0.12;  // px
   cv::Mat grey = picture;
   Prepared image = prepare(grey, {.bright = bright}, 0.5 * diameter_px);
   if (bright) {
@@ -342,7 +347,7 @@ CellEdges find_cell_edges(const cv::Mat& picture, bool bright, double diameter_p
     Window w{.first = std::max({1, line.own, line.light - reach}), .light = {}, .blocked = {}};
     for (int i = w.first; i < std::min(n, line.light + reach); ++i) {
       const cv::Point at = pixel_from(line.from, d.size(), line.number, i);
-      if (share(at) < kLeastShare) break;
+      if (share(at) < kMinTransmission) break;
       const Surface basis = surface_basis(at.x, at.y, d.size());
       const double b = image.light.dot(basis), level = 1 - light.dot(basis) / b,
                    dark = black_is_clipped ? 1 : 1 - walls[kind_of(line)].dot(basis) / b;
@@ -353,13 +358,13 @@ CellEdges find_cell_edges(const cv::Mat& picture, bool bright, double diameter_p
     return w;
   };
   // Blur: the side walls share one blur, and the plate has its own.
-  double blur[2] = {kUsualBlur, kUsualBlur};
+  double blur[2] = {kStartBlur, kStartBlur};
   for (int round = 0; round < 2; ++round) {
     std::vector<double> found[2];
     for (const Line& line : lines) {
       const int kind = kind_of(line);
       const auto step = fit_step(window_of(line, blur[kind]), line.light - 0.5, blur[kind], true, noise);
-      if (step && step->blur < kLargestBlur) found[kind].push_back(step->blur);
+      if (step && step->blur < kMaxBlur) found[kind].push_back(step->blur);
     }
     for (int kind = 0; kind < 2; ++kind)
       if (!found[kind].empty()) blur[kind] = upper_median(std::move(found[kind]));
@@ -371,7 +376,7 @@ CellEdges find_cell_edges(const cv::Mat& picture, bool bright, double diameter_p
     const auto step = fit_step(window_of(line, s), line.light - 0.5, s, false, noise);
     if (!step) continue;
     const double sigma = step->error * noise;
-    if (sigma > kLargestError) continue;
+    if (sigma > kMaxError) continue;
     if (line.from == Border::left)
       edges.left.push_back({{step->at, double(line.number)}, sigma});
     else if (line.from == Border::right)
@@ -379,7 +384,7 @@ CellEdges find_cell_edges(const cv::Mat& picture, bool bright, double diameter_p
     else
       edges.plate.push_back({{double(line.number), d.rows - 1 - step->at}, sigma});
   }
-  leave_corners_out(edges, kCorner * std::max(blur[0], blur[1]));
+  leave_corners_out(edges, kCornerReach * std::max(blur[0], blur[1]));
   return edges;
 }
 

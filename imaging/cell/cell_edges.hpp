@@ -4,8 +4,8 @@
 ///
 /// Every row is searched from the left and from the right border, and every column from the bottom, through
 /// the dark to the first bright pixel. A wall or plate that is a bar with light behind it is searched from
-/// its outer side, if that is straight and no bead. At the step there, at position e, the light relative to
-/// the local light is
+/// its outer side, if that is straight and not the rim of a bead. At the step there, at position e, the light
+/// relative to the local light is
 ///     l_i = Phi((i - e)/s) - D_i,
 /// with a blur s common to all rows of a frame (and another common to all columns), and D_i the share of
 /// light that the beads block, from their fitted discs. Beads and walls do not overlap, so what they block

@@ -12,7 +12,7 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr double kPlateAt = 0.2;  // beads hide the plate in most columns
+constexpr double kPlateQuantile = 0.2;  // of the heights of the columns: beads hide the plate in most of them
 constexpr float kHalf = 0.5F;
 
 double value_at(const std::vector<float>& values, double share) {
@@ -41,20 +41,22 @@ double bar_height_px(const cv::Mat& grey, bool bright, double light, double dark
     }
     if (heights.size() > highest.size()) highest = std::move(heights);
   }
-  return highest.empty() ? kNaN : value_at(highest, kPlateAt);
+  return highest.empty() ? kNaN : value_at(highest, kPlateQuantile);
 }
 
 }  // namespace
 
 double plate_height_px(const cv::Mat& grey, bool bright) {
-  constexpr int kBorder = 3, kSampled = 64;
-  constexpr double kLeastContrast = 0.4, kLightAt = 0.95, kFewestShare = 0.1;
-  constexpr std::size_t kFewest = 8;
-  if (grey.rows < 2 * kBorder || grey.cols < static_cast<int>(kFewest)) return kNaN;
+  constexpr int kBorder = 3, kSampledRows = 64;  // px; rows that give the levels
+  constexpr double kMinContrast = 0.4;           // of light and plate, fraction of that of light and dark
+  constexpr double kLightQuantile = 0.95;
+  constexpr double kMinShareOfColumns = 0.1;  // that show the plate
+  constexpr std::size_t kMinColumns = 8;
+  if (grey.rows < 2 * kBorder || grey.cols < static_cast<int>(kMinColumns)) return kNaN;
   // Levels: the light is the upper end of the values of some rows, the plate the middle of the lowest rows.
   cv::Mat1f row;
   std::vector<float> all, lowest;
-  const int stride = std::max(1, grey.rows / kSampled);
+  const int stride = std::max(1, grey.rows / kSampledRows);
   for (int y = 0; y < grey.rows; y += stride) {
     read_row(grey, y, bright, row);
     all.insert(all.end(), row.begin(), row.end());
@@ -63,10 +65,10 @@ double plate_height_px(const cv::Mat& grey, bool bright) {
     read_row(grey, y, bright, row);
     lowest.insert(lowest.end(), row.begin(), row.end());
   }
-  const double light = value_at(all, kLightAt), dark = value_at(all, 1 - kLightAt),
+  const double light = value_at(all, kLightQuantile), dark = value_at(all, 1 - kLightQuantile),
                plate = value_at(lowest, 0.5);
   if (!(light > dark)) return kNaN;
-  if (!(light - plate > kLeastContrast * (light - dark))) return bar_height_px(grey, bright, light, dark);
+  if (!(light - plate > kMinContrast * (light - dark))) return bar_height_px(grey, bright, light, dark);
   const auto half = static_cast<float>(0.5 * (light + plate));
   // Columns: distance of the first crossing from below.
   const auto columns = static_cast<std::size_t>(grey.cols);
@@ -89,12 +91,12 @@ double plate_height_px(const cv::Mat& grey, bool bright) {
       below[x] = v;
     }
     // The plate has been passed by the most open columns; the rest are beads and walls.
-    if (heights.size() > columns / 2 && h > 2 * value_at(heights, kPlateAt) + kBorder) break;
+    if (heights.size() > columns / 2 && h > 2 * value_at(heights, kPlateQuantile) + kBorder) break;
   }
-  if (heights.size() < std::max(kFewest, static_cast<std::size_t>(kFewestShare * grey.cols)) ||
+  if (heights.size() < std::max(kMinColumns, static_cast<std::size_t>(kMinShareOfColumns * grey.cols)) ||
       no_plate > columns / 10)
     return kNaN;
-  return value_at(heights, kPlateAt);
+  return value_at(heights, kPlateQuantile);
 }
 
 }  // namespace twincell::imaging

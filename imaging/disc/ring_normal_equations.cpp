@@ -35,15 +35,15 @@ inline std::vector<GaussNode> gauss_nodes(int n) {
 
 /// The nodes for the path of a blur: two, and one more for each s of its length, up to 12.
 inline std::span<const GaussNode> nodes_of(const EdgeBlur& blur) {
-  constexpr int kLeast = 2, kMost = 12;
+  constexpr int kMinNodes = 2, kMaxNodes = 12;
   if (blur.path == std::array<double, 2>{}) return {};
   static const std::vector<std::vector<GaussNode>> kNodes = [] {
     std::vector<std::vector<GaussNode>> all;
-    for (int n = kLeast; n <= kMost; ++n) all.push_back(gauss_nodes(n));
+    for (int n = kMinNodes; n <= kMaxNodes; ++n) all.push_back(gauss_nodes(n));
     return all;
   }();
   const double widths = std::hypot(blur.path[0], blur.path[1]) / std::sqrt(blur.variance);
-  return kNodes[static_cast<std::size_t>(std::min(widths, 1.0 * (kMost - kLeast)))];
+  return kNodes[static_cast<std::size_t>(std::min(widths, 1.0 * (kMaxNodes - kMinNodes)))];
 }
 
 }  // namespace twincell::imaging::ring_normal_equations
@@ -96,7 +96,7 @@ HWY_INLINE V inverse(V a) {
   return hn::Mul(guess, hn::NegMulAdd(a, guess, set(2)));
 }
 
-constexpr double kFar = 4;  // in units of s; beyond this distance the edge is 0 or 1 to 3e-5
+constexpr double kEdgeReach = 4;  // in units of s; beyond this distance the edge is 0 or 1 to 3e-5
 
 struct Edge {
   V p;        // P
@@ -252,8 +252,8 @@ struct Ring {
 
 /// Pixels of a ring in contiguous arrays, and their derivatives, weights and residuals.
 struct RingPixels {
-  static constexpr std::size_t kMost = 512;
-  using Row = std::array<float, kMost + kSpareColumns>;
+  static constexpr std::size_t kCapacity = 512;  // pixels
+  using Row = std::array<float, kCapacity + kSpareColumns>;
   alignas(64) Row dx, dy, d, t;  // from the centre; picture; model
   // The derivatives overwrite the input, so that all arrays stay in the first-level cache.
   Row &x = dx, &y = dy, &radius = d, &p = t;
@@ -265,7 +265,7 @@ struct RingPixels {
 template <BlurFit kBlur>
 struct Sums {
   static constexpr int kF = RingSums::kFitted, kB = blurs_of(kBlur);
-  static constexpr int kSome = kB > 0 ? kB : 1;
+  static constexpr int kBlurLength = kB > 0 ? kB : 1;  // of arrays over the blur parameters, not 0
 
   /// Computes weight, residual and derivatives of each pixel.
   static HWY_INLINE void read(RingPixels& q, std::size_t n, const Ring& ring, const RingArgs& args,
@@ -329,7 +329,7 @@ struct Sums {
   /// Sums the normal equations of the blur, and its coupling to x, y, R and a.
   static HWY_INLINE void gather_blur(const RingPixels& q, std::size_t n, RingSums& s) {
     const Tag tag;
-    V jb[kF * kSome], bb[kSome * (kSome + 1) / 2], br[kSome];
+    V jb[kF * kBlurLength], bb[kBlurLength * (kBlurLength + 1) / 2], br[kBlurLength];
     for (V& v : jb) v = hn::Zero(tag);
     for (V& v : bb) v = hn::Zero(tag);
     for (V& v : br) v = hn::Zero(tag);
@@ -337,22 +337,23 @@ struct Sums {
       const V w = hn::Load(tag, &q.w[k]), residual = hn::Load(tag, &q.residual[k]);
       const V j[kF] = {hn::Load(tag, &q.x[k]), hn::Load(tag, &q.y[k]), hn::Load(tag, &q.radius[k]),
                        hn::Load(tag, &q.p[k])};
-      V b[kSome];
-      for (int m = 0; m < kSome; ++m) b[m] = hn::Load(tag, &q.blur[m][k]);
+      V b[kBlurLength];
+      for (int m = 0; m < kBlurLength; ++m) b[m] = hn::Load(tag, &q.blur[m][k]);
       int at = 0;
-      for (int m = 0; m < kSome; ++m) {
+      for (int m = 0; m < kBlurLength; ++m) {
         const V wb = hn::Mul(w, b[m]);
         br[m] = hn::MulAdd(wb, residual, br[m]);
         for (int c = 0; c <= m; ++c, ++at) bb[at] = hn::MulAdd(wb, b[c], bb[at]);
-        for (int c = 0; c < kF; ++c) jb[kSome * c + m] = hn::MulAdd(wb, j[c], jb[kSome * c + m]);
+        for (int c = 0; c < kF; ++c) jb[kBlurLength * c + m] = hn::MulAdd(wb, j[c], jb[kBlurLength * c + m]);
       }
     }
-    for (int m = 0; m < kSome * (kSome + 1) / 2; ++m) s.bb[static_cast<std::size_t>(m)] += total(bb[m]);
-    for (int m = 0; m < kSome; ++m) s.br[static_cast<std::size_t>(m)] += total(br[m]);
+    for (int m = 0; m < kBlurLength * (kBlurLength + 1) / 2; ++m)
+      s.bb[static_cast<std::size_t>(m)] += total(bb[m]);
+    for (int m = 0; m < kBlurLength; ++m) s.br[static_cast<std::size_t>(m)] += total(br[m]);
     for (int m = 0; m < kF; ++m)
-      for (int c = 0; c < kSome; ++c)
+      for (int c = 0; c < kBlurLength; ++c)
         s.jb[std::size_t{RingSums::kBlurs} * static_cast<std::size_t>(m) + static_cast<std::size_t>(c)] +=
-            total(jb[kSome * m + c]);
+            total(jb[kBlurLength * m + c]);
   }
 
   static HWY_INLINE double total(V v) { return static_cast<double>(hn::GetLane(hn::SumOfLanes(Tag(), v))); }
@@ -386,7 +387,7 @@ struct Sums {
           hn::StoreU(compact(d), tag, &q.d[n]);
           hn::StoreU(compact(t), tag, &q.t[n]);
           n += compact.count();
-          if (n + hn::MaxLanes(tag) > RingPixels::kMost) flush();
+          if (n + hn::MaxLanes(tag) > RingPixels::kCapacity) flush();
         });
     if (n > 0) flush();
     return s;
@@ -429,7 +430,7 @@ class SharedPixels {
     hn::StoreU(compact(d), tag, &d_[n_]);
     hn::StoreU(compact(hn::LoadU(tag, args_.model->ptr<float>(y) + x)), tag, &t_[n_]);
     n_ += compact.count();
-    if (n_ + hn::MaxLanes(tag) > kMost) add();
+    if (n_ + hn::MaxLanes(tag) > kCapacity) add();
   }
 
   PairSums sums() {
@@ -441,8 +442,8 @@ class SharedPixels {
   }
 
  private:
-  static constexpr std::size_t kMost = 128;
-  using Row = std::array<float, kMost + kSpareColumns>;
+  static constexpr std::size_t kCapacity = 128;  // pixels
+  using Row = std::array<float, kCapacity + kSpareColumns>;
 
   HWY_INLINE void add() {
     const Tag tag;
@@ -514,7 +515,7 @@ void add(cv::Mat1f& model, const Disc& disc, const EdgeBlur& blur, int row_step)
   const Ring ring(disc, blur);
   const Tag tag;
   const V a = set(disc.darkness);
-  const double reach = blur.reach(kFar);
+  const double reach = blur.reach(kEdgeReach);
   ring.over<true>(frame_of(model), disc.radius - reach, disc.radius + reach, row_step,
                   [&](int row, int column, V dx, V dy, bool inside) HWY_ATTR {
                     float* at = model.ptr<float>(ring.base_y + row) + ring.base_x + column;

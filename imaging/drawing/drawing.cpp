@@ -156,9 +156,10 @@ class Painter {
  private:
   static constexpr int kShift = 4;  // bits of a pixel that OpenCV's coordinates keep
   static cv::Point fine(const cv::Point2d& p) {
-    constexpr double kFine = 1 << kShift, kFarthest = 1e8;  // a bead may be far outside an open cell
+    constexpr double kFine = 1 << kShift;
+    constexpr double kMaxCoordinate = 1e8;  // 1/16 px; a bead may be far outside an open cell
     const auto whole = [=](double px) {
-      return static_cast<int>(std::lround(std::clamp(px * kFine, -kFarthest, kFarthest)));
+      return static_cast<int>(std::lround(std::clamp(px * kFine, -kMaxCoordinate, kMaxCoordinate)));
     };
     return {whole(p.x), whole(p.y)};
   }
@@ -293,8 +294,8 @@ class Painter {
 
   void draw_texts(cv::Mat3b& picture) const {
     const cv::Rect cell = view_.cell();
-    constexpr int kAbove = 14;
-    draw_label(picture, frame_title(frame_, info_), {cell.x, cell.y - kAbove}, kInk);
+    constexpr int kTitleGap = 14;  // px above the cell
+    draw_label(picture, frame_title(frame_, info_), {cell.x, cell.y - kTitleGap}, kInk);
     draw_scale_bar(picture);
     if (job_.colours.of) draw_colour_bar(picture);
   }
@@ -325,8 +326,8 @@ class Painter {
 
   void draw_colour_bar(cv::Mat3b& picture) const {
     const cv::Rect cell = view_.cell();
-    constexpr int kGap = 18, kWidth = 14, kTallest = 300;
-    const int height = std::min(cell.height - 20, kTallest), left = cell.x + cell.width + kGap;
+    constexpr int kGap = 18, kWidth = 14, kMaxHeight = 300;  // px
+    const int height = std::min(cell.height - 20, kMaxHeight), left = cell.x + cell.width + kGap;
     const int top = cell.y + 20;
     for (int y = 0; y < height; ++y) {
       const cv::Vec3b c = map_colour(1 - static_cast<double>(y) / (height - 1), {0, 1});

@@ -27,7 +27,7 @@ struct BeadColours {
   std::optional<std::array<double, 2>> range;
 };
 
-/// What is drawn.
+/// Options of a drawing.
 struct DrawJob {
   std::filesystem::path output;  ///< .png: the last of the chosen frames; .mp4, .avi: all of them
   FrameRange frames;
@@ -41,7 +41,7 @@ struct DrawJob {
   [[nodiscard]] bool film() const { return output.extension() != ".png"; }
 };
 
-/// What was drawn.
+/// Result of a drawing.
 struct Drawn {
   std::size_t frames = 0;
   std::array<double, 2> range = {0, 0};  ///< of the colours

@@ -36,18 +36,19 @@ View::View(const Box& box, double bottom, double top, bool colour_bar, double pi
   }
   near_ = near, far_ = std::max(far, near + 1e-9);
   const double width = most[0] - least[0], height = most[1] - least[1];
-  constexpr double kSide = 900, kLargest = 8000, kLeastScale = 0.5, kMostScale = 60;
+  constexpr double kDefaultSide = 900, kMaxSide = 8000;  // px
+  constexpr double kMinScale = 0.5, kMaxScale = 60;      // px per sigma
   scale_ = pixels_per_sigma > 0 ? pixels_per_sigma
-                                : std::clamp(kSide / std::max(width, height), kLeastScale, kMostScale);
-  if (std::max(width, height) * scale_ > kLargest)
+                                : std::clamp(kDefaultSide / std::max(width, height), kMinScale, kMaxScale);
+  if (std::max(width, height) * scale_ > kMaxSide)
     throw ConfigError(Where{.file = {}, .key = "--pixels-per-sigma"},
                       fmt::format("{:.4g} makes a picture of {:.0f} px; at most {:.0f} are drawn.", scale_,
-                                  std::max(width, height) * scale_, kLargest));
+                                  std::max(width, height) * scale_, kMaxSide));
   // Labels need some width and height even if the cell is narrow.
-  constexpr int kNarrowest = 452, kLowest = 120;
+  constexpr int kMinWidth = 452, kMinHeight = 120;  // px
   const int bar = colour_bar ? kColourBar : 0;
-  const int columns = std::max(static_cast<int>(std::ceil(width * scale_)), kNarrowest - bar);
-  const int rows = std::max(static_cast<int>(std::ceil(height * scale_)), kLowest);
+  const int columns = std::max(static_cast<int>(std::ceil(width * scale_)), kMinWidth - bar);
+  const int rows = std::max(static_cast<int>(std::ceil(height * scale_)), kMinHeight);
   cell_ = {kLeft, kTop, columns, rows};
   // Films need even sides.
   size_ = {(kLeft + columns + bar + kRight + 1) / 2 * 2, (kTop + rows + kBottom + 1) / 2 * 2};

@@ -14,4 +14,18 @@ struct PixelPoint {
   double y_px = 0;  ///< down, from the centre of the first row
 };
 
+inline PixelPoint operator+(PixelPoint a, PixelPoint b) {
+  return {a.x_px + b.x_px, a.y_px + b.y_px};
+}
+inline PixelPoint operator-(PixelPoint a, PixelPoint b) {
+  return {a.x_px - b.x_px, a.y_px - b.y_px};
+}
+inline PixelPoint operator*(double f, PixelPoint a) {
+  return {f * a.x_px, f * a.y_px};
+}
+/// Squared length, px^2.
+inline double square(PixelPoint a) {
+  return a.x_px * a.x_px + a.y_px * a.y_px;
+}
+
 }  // namespace twincell::imaging

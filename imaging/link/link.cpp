@@ -7,20 +7,20 @@
 #include "core/constants.hpp"
 #include "core/error.hpp"
 #include "imaging/link/assign_open_tracks.hpp"
+#include "imaging/link/direct_links.hpp"
 #include "imaging/link/frame_match.hpp"
 #include "imaging/link/link_costs.hpp"
 #include "imaging/link/predict.hpp"
 #include "imaging/link/rematch.hpp"
-#include "imaging/link/settle.hpp"
 
 namespace twincell::imaging {
 
 namespace {
 
 void require_places(std::span<const PixelPoint> detections, std::int64_t frame) {
-  constexpr double kFar = 1e9;  // px, beyond any camera
+  constexpr double kMaxCoordinate = 1e9;  // px, beyond any camera
   for (std::size_t k = 0; k < detections.size(); ++k)
-    if (!(std::abs(detections[k].x_px) < kFar && std::abs(detections[k].y_px) < kFar))
+    if (!(std::abs(detections[k].x_px) < kMaxCoordinate && std::abs(detections[k].y_px) < kMaxCoordinate))
       throw RunError(fmt::format("frame {}, detection {}: ({}, {}) is not a position in a picture.", frame, k,
                                  detections[k].x_px, detections[k].y_px));
 }
@@ -36,7 +36,7 @@ std::vector<std::int32_t> in_order_given(const FrameMatch& m) {
 FrameMatch link_without_lookahead(const LinkOptions& options, const Tracks& tracks, const FrameAhead& frame) {
   FrameMatch m(options, tracks, frame.detections, frame.time, frame.tracers);
   predict(m);
-  settle(m);
+  link_without_rivals(m);
   const auto n = static_cast<double>(m.tracks.size());
   const bool rough = n - static_cast<double>(m.report.settled) > kLinkCosts.open_fraction * n;
   follow_neighbours(m);
@@ -93,7 +93,7 @@ Linker::Linker(const LinkOptions& options, int phases_per_cycle) : options_(opti
   require_range(at("memory"), options.memory, 0, 1000);
   require_range(at("max-shift"), options.max_shift_diameters, 0, 10);
   require_range(at("ambiguous-odds"), options.ambiguous_odds, 1, std::nullopt);
-  tracks_.phases = phases_per_cycle > kMostPhases ? 0 : phases_per_cycle;
+  tracks_.phases = phases_per_cycle > kMaxPhases ? 0 : phases_per_cycle;
   tracks_.cycle_of_phase.assign(static_cast<std::size_t>(tracks_.phases), -2);
 }
 

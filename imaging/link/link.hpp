@@ -34,7 +34,7 @@ namespace twincell::imaging {
 class Linker {
  public:
   /// The rule "one cycle ago" is disabled for cycles with more phases.
-  static constexpr int kMostPhases = 512;
+  static constexpr int kMaxPhases = 512;
   /// \throws ConfigError if an option is out of range
   explicit Linker(const LinkOptions& options, int phases_per_cycle = 0);
   /// Returns the track of each detection in the next frame. Existing tracks keep their numbers; new ones are

@@ -13,7 +13,7 @@ struct LinkCosts {
   // Lookup and prediction.
   double settle_reach = 0.25;    ///< d; a detection this close has no rival, because discs do not overlap
   double lookup_reach = 0.5;     ///< d; reach of the lookup
-  double rival_ratio = 2;        ///< a second candidate this many times farther away is no rival
+  double rival_ratio = 2;        ///< a second candidate this many times farther away is not a rival
   double neighbour_reach = 2.1;  ///< d; distance of neighbours whose steps are compared
   double good_fit = 0.95;        ///< fit, 0 .. 1, above which no further rule is tried
   double open_fraction = 0.03;   ///< of all tracks; with more open ones, the settled ones are checked again

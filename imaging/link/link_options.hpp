@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What the linker takes and reports: options, the time of a frame, the frame ahead, and counts.
+/// Input and report of the linker: options, the time of a frame, the frame ahead, and counts.
 
 #include <cstdint>
 #include <span>

@@ -19,10 +19,10 @@ MatchMessages::MatchMessages(const MatchProblem& problem) : problem_(problem) {
     const PixelPoint between = problem_.places[p.b] - problem_.places[p.a];
     for (std::size_t k = 0; k < of_a; ++k) {
       const std::uint32_t to_a = problem_.choices[problem_.first[p.a] + k].column;
-      const PixelPoint alike = problem_.detections[to_a] + between;
+      const PixelPoint same_step = problem_.detections[to_a] + between;
       for (std::size_t l = 0; l < of_b; ++l) {
         const std::uint32_t to_b = problem_.choices[problem_.first[p.b] + l].column;
-        const double r2 = square(problem_.detections[to_b] - alike) / (problem_.d * problem_.d);
+        const double r2 = square(problem_.detections[to_b] - same_step) / (problem_.d * problem_.d);
         if (to_a == to_b || r2 >= kMatchCosts.step_difference_cap * kMatchCosts.step_difference_cap) continue;
         compatible_.push_back({static_cast<std::uint16_t>(k), static_cast<std::uint16_t>(l),
                                static_cast<float>(p.weight * MatchProblem::step_difference_cost(r2))});

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a collective matching minimises (collective_matching.hpp): beads, detections, neighbours, and the
+/// Input of a collective matching (collective_matching.hpp): beads, detections, neighbours, and the
 /// costs of single beads and of pairs.
 
 #include <algorithm>
@@ -105,7 +105,7 @@ struct MatchProblem {
         step_difference_cost(kMatchCosts.step_difference_cap * kMatchCosts.step_difference_cap);
     return cost;
   }
-  /// u_t(k); 0 for k < 0 (unassigned), infinity if k is no choice of t.
+  /// u_t(k); 0 for k < 0 (unassigned), infinity if k is not a choice of t.
   [[nodiscard]] double own_cost(std::size_t t, std::int64_t k) const {
     if (k < 0) return 0;
     for (std::size_t e = first[t]; e < first[t + 1]; ++e)

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Search of points within a given distance, and arithmetic of points.
+/// Search of points within a given distance.
 
 #include <algorithm>
 #include <cstddef>
@@ -12,19 +12,6 @@
 
 namespace twincell::imaging {
 
-inline PixelPoint operator+(PixelPoint a, PixelPoint b) {
-  return {a.x_px + b.x_px, a.y_px + b.y_px};
-}
-inline PixelPoint operator-(PixelPoint a, PixelPoint b) {
-  return {a.x_px - b.x_px, a.y_px - b.y_px};
-}
-inline PixelPoint operator*(double f, PixelPoint a) {
-  return {f * a.x_px, f * a.y_px};
-}
-/// Squared length, px^2.
-inline double square(PixelPoint a) {
-  return a.x_px * a.x_px + a.y_px * a.y_px;
-}
 /// Median of each coordinate; reorders the points. 0 if there are no points.
 PixelPoint median(std::vector<PixelPoint>& points);
 

@@ -149,13 +149,13 @@ Prediction fitted(const FrameMatch& m, const Bed& bed, PredictionRule rule) {
 
 /// The first rule, unless a later one fits clearly better.
 Prediction best_rule(const FrameMatch& m, const Bed& bed) {
-  constexpr double kClearly = 0.03;
+  constexpr double kMinGain = 0.03;  // of the fit, from a later rule
   std::vector<PredictionRule> rules = {PredictionRule::still, PredictionRule::step};
   if (m.before.remember(m.time)) rules.push_back(PredictionRule::cycle);
   Prediction best;
   for (const PredictionRule rule : rules) {
     const Prediction other = fitted(m, bed, rule);
-    if (other.fit > best.fit + kClearly) best = other;
+    if (other.fit > best.fit + kMinGain) best = other;
     if (best.fit > kLinkCosts.good_fit) break;
   }
   return best;
@@ -181,12 +181,12 @@ void search_shifts(FrameMatch& m, const Bed& bed, Prediction& best) {
 
 void predict(FrameMatch& m) {
   constexpr double kPoorFit = 0.5;
-  constexpr double kFar = 1e9;  // px, beyond any camera
+  constexpr double kMaxCoordinate = 1e9;  // px, beyond any camera
   const Bed bed = bed_of(m);
   Prediction best = best_rule(m, bed);
   if (bed.may_shift && best.fit < kPoorFit) search_shifts(m, bed, best);
   // Floor: the plate stops a landing bed, and its lowest row lands first.
-  double floor = -kFar;
+  double floor = -kMaxCoordinate;
   for (std::size_t k = 0; k < m.detections.size(); ++k) floor = std::max(floor, m.detections[k].y_px);
   const auto above_floor = [&](PixelPoint p) { return PixelPoint{p.x_px, std::min(p.y_px, floor)}; };
   m.ballistic.resize(m.tracks.size());

@@ -160,8 +160,8 @@ void match_all(FrameMatch& m, const std::vector<PixelPoint>& steps_back) {
     find_choices(m, t, steps_back, own);
     choices.insert(choices.end(), own.begin(), own.end());
   }
-  // In one layer of discs each bead has about a dozen choices. With many more, the points are no such layer
-  // and the matching would take too long.
+  // In one layer of discs each bead has about a dozen choices. With many more, the points are not such a
+  // layer, and the matching would take too long.
   if (choices.size() > kLinkCosts.max_mean_choices * std::min(m.tracks.size(), m.detections.size())) return;
   std::vector<PixelPoint> detections;
   for (std::size_t k = 0; k < m.detections.size(); ++k) detections.push_back(m.detections[k]);

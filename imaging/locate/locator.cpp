@@ -13,9 +13,8 @@
 #include "core/error.hpp"
 #include "core/median.hpp"
 #include "imaging/locate/picture_orientation.hpp"
-#include "imaging/refine/overlapping_fit.hpp"
+#include "imaging/refine/outlier_discs.hpp"
 #include "imaging/refine/size_assignment.hpp"
-#include "imaging/refine/unlike_discs.hpp"
 
 namespace twincell::imaging {
 
@@ -113,8 +112,8 @@ std::vector<Proposal> propose_all(const Prepared& image, const LocatorOptions& o
   FindOptions wanted = options.find;
   // A proposal of the wrong size must not suppress its neighbours.
   constexpr double kApart = 0.2;
-  const bool overlapping = options.refine.method == kOverlappingRefiner.word;
-  if (choose || overlapping) wanted.apart = kApart;
+  const bool layers = refiner_named(options.refine.method).layers;
+  if (choose || layers) wanted.apart = kApart;
   wanted.radius_px = options.diameter_px / 2;
   std::vector<Proposal> all = propose_at_scale(options.finder, image, wanted);
   for (const double other : options.other_diameters_px) {
@@ -122,7 +121,7 @@ std::vector<Proposal> propose_all(const Prepared& image, const LocatorOptions& o
     const std::vector<Proposal> more = propose_at_scale(options.finder, image, wanted);
     all.insert(all.end(), more.begin(), more.end());
   }
-  return choose && !overlapping ? assign_sizes(image, all) : all;
+  return choose && !layers ? assign_sizes(image, all) : all;
 }
 
 /// Scales the radii so that a disc as large as the profile has the radius of the profile's rim.
@@ -186,14 +185,14 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
   if (refiner.model == DiscModel::shared_profile) judged.min_interior = -HUGE_VAL;
   // Of two discs of different layers, nearly all of one may be hidden.
   constexpr double kBehind = 1.75;
-  if (options.refine.method == kOverlappingRefiner.word) judged.max_overlap = kBehind;
+  if (refiner.layers) judged.max_overlap = kBehind;
   judged.other_radii_px = refined.other_radii_px;
   judged.pale = options.refine.pale;
   result.judged = judge(result.refined.beads, radius, grey.cols, grey.rows, judged);
-  if (judged.drop_unlike && some_may_be_unlike(result.judged.beads)) {
-    const std::vector<Detection> unlike =
-        drop_unlike(grey, result.judged.beads, result.judged.dropped, radius);
-    result.judged.dropped.insert(result.judged.dropped.end(), unlike.begin(), unlike.end());
+  if (judged.drop_outliers && may_have_outliers(result.judged.beads)) {
+    const std::vector<Detection> outliers =
+        drop_outliers(grey, result.judged.beads, result.judged.dropped, radius);
+    result.judged.dropped.insert(result.judged.dropped.end(), outliers.begin(), outliers.end());
   }
   if (options.rim_radii && refiner.model == DiscModel::shared_profile)
     stretch_to_rim(result.judged.beads, result.refined.profile);

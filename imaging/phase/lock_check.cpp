@@ -16,7 +16,7 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr double kMostSlips = 0.1;  // of the frames
+constexpr double kMaxSlips = 0.1;  // of the frames
 constexpr const char* kCure =
     "use --phase-lock found, or a list of the phases (calibrate plate --phases LIST.csv, then --phase-lock "
     "LIST.csv), or correct the frames per cycle";
@@ -27,7 +27,7 @@ constexpr const char* kCure =
 }
 
 /// Accepts ticks in which frames are missing or doubled, unless they are too many. \param witness "the plate"
-/// \param out_of_lock frames whose ticks count for nothing
+/// \param out_of_lock frames whose ticks are not used
 void accept(PhaseTable& table, std::span<const std::int64_t> ticks, std::span<const FrameStretch> out_of_lock,
             const std::string& witness) {
   set_phases(table, ticks);
@@ -37,7 +37,7 @@ void accept(PhaseTable& table, std::span<const std::int64_t> ticks, std::span<co
   const auto first = std::find_if(table.frames.begin(), table.frames.end(),
                                   [](const FramePhase& f) { return f.interval != 1; }) -
                      table.frames.begin();
-  if (static_cast<double>(slips) > kMostSlips * static_cast<double>(ticks.size()))
+  if (static_cast<double>(slips) > kMaxSlips * static_cast<double>(ticks.size()))
     refuse(table, fmt::format("by {} {} of {} frames do not follow the frame before them, the first at frame "
                               "{}",
                               witness, slips, ticks.size(), first));
@@ -50,7 +50,7 @@ void accept(PhaseTable& table, std::span<const std::int64_t> ticks, std::span<co
 
 /// \returns whether the plate could tell; `why_not` if it could not
 bool by_plate(PhaseTable& table, const PhaseLock& lock, std::span<const double> plate, std::string& why_not) {
-  constexpr double kOff = 0.6;
+  constexpr double kMaxPhaseDifference = 0.6;  // frames
   const PlateReading reading = read_plate(plate, table.frames_per_cycle);
   if (reading.other)
     refuse(table,
@@ -84,9 +84,9 @@ bool by_plate(PhaseTable& table, const PhaseLock& lock, std::span<const double> 
     }
     add_warning(out_of_lock_in_words(table));
   }
-  constexpr double kManyMisread = 0.03;  // of the frames
+  constexpr double kMaxMisreadShare = 0.03;  // of the frames
   if (reading.far_off > 0 ||
-      static_cast<double>(reading.misread) > kManyMisread * static_cast<double>(plate.size()))
+      static_cast<double>(reading.misread) > kMaxMisreadShare * static_cast<double>(plate.size()))
     add_warning(fmt::format(
         "the plate is off its sine in {} of {} frames{}: its edge is misread there, a frame is not "
         "where it belongs, or the drive is not steady (calibrate plate names these frames)",
@@ -94,12 +94,12 @@ bool by_plate(PhaseTable& table, const PhaseLock& lock, std::span<const double> 
   // Phase of the first frame.
   const double cycle = table.frames_per_cycle;
   const double off = std::remainder(fit.phase * cycle - table.first_phase - lock.offset, cycle);
-  if (std::abs(off) > kOff) {
+  if (std::abs(off) > kMaxPhaseDifference) {
     const long shown =
         ((std::lround(fit.phase * cycle - lock.offset) % table.frames_per_cycle) + table.frames_per_cycle) %
         table.frames_per_cycle;
-    constexpr double kWrong = 0.75;  // frames
-    if (std::abs(off) > kWrong)
+    constexpr double kMaxWarnedDifference = 0.75;  // frames; a larger one is an error
+    if (std::abs(off) > kMaxWarnedDifference)
       throw ConfigError(
           Where{.file = {}, .key = "first_phase"},
           fmt::format("is {}, but the plate in the frames shows the first frame at phase {} of {}; "
@@ -115,7 +115,7 @@ bool by_plate(PhaseTable& table, const PhaseLock& lock, std::span<const double> 
 }
 
 bool by_times(PhaseTable& table, std::span<const double> times, std::string& why_not) {
-  constexpr double kWhole = 0.25;
+  constexpr double kMaxRounding = 0.25;  // of a step to whole frames, frames
   if (times.size() < 3) {
     why_not += " and the stack has no time stamps";
     return false;
@@ -127,7 +127,7 @@ bool by_times(PhaseTable& table, std::span<const double> times, std::string& why
   bool slips = false;
   for (const double step : steps) {
     const double by = usual > 0 ? step / usual : -1;
-    if (!(by > -kWhole) || std::abs(by - std::round(by)) > kWhole || by > 1e9) {
+    if (!(by > -kMaxRounding) || std::abs(by - std::round(by)) > kMaxRounding || by > 1e9) {
       why_not += " and the time stamps are irregular";
       return false;
     }
@@ -142,13 +142,13 @@ bool by_times(PhaseTable& table, std::span<const double> times, std::string& why
 }  // namespace
 
 std::string slips_in_words(std::span<const FramePhase> frames) {
-  constexpr int kMostNamed = 8;
+  constexpr int kMaxNamed = 8;
   std::string dropped, doubled;
   int named = 0;
   for (std::size_t f = 1; f < frames.size(); ++f) {
     const double by = frames[f].interval;
     if (by == 1) continue;
-    if (++named > kMostNamed) break;
+    if (++named > kMaxNamed) break;
     if (by > 1)
       dropped += fmt::format("{}{:.0f} before frame {}", dropped.empty() ? "" : ", ", by - 1, f);
     else
@@ -157,7 +157,7 @@ std::string slips_in_words(std::span<const FramePhase> frames) {
   std::string text;
   if (!dropped.empty()) text = "missing: " + dropped;
   if (!doubled.empty()) text += (text.empty() ? "" : "; ") + ("taken twice: frame " + doubled);
-  return named > kMostNamed ? text + ", ..." : text;
+  return named > kMaxNamed ? text + ", ..." : text;
 }
 
 PhaseTable check_lock(const PhaseLock& lock, const LockEvidence& evidence) {
@@ -170,8 +170,10 @@ PhaseTable check_lock(const PhaseLock& lock, const LockEvidence& evidence) {
 }
 
 void check_list_by_plate(PhaseTable& table, std::span<const double> plate_px, bool sine) {
-  constexpr int kTerms = 5;  // 1, sin, cos, and of the second harmonic
-  constexpr double kLeastShare = 0.5, kFarthest = 0.75, kSamePeriod = 0.01;
+  constexpr int kTerms = 5;                      // 1, sin, cos, and of the second harmonic
+  constexpr double kMinExplainedShare = 0.5;     // of the variance of the heights
+  constexpr double kMaxPhaseDifference = 0.75;   // frames
+  constexpr double kMaxPeriodDifference = 0.01;  // relative
   if (!table.locked()) return;
   const std::optional<PhaseTable> alone = phases_from_plate(plate_px, 0);
   if (!alone) return;
@@ -200,10 +202,10 @@ void check_list_by_plate(PhaseTable& table, std::span<const double> plate_px, bo
                     "--trust-stated-drive.",
                     why));
   };
-  if (left > (1 - kLeastShare) * all) {
+  if (left > (1 - kMinExplainedShare) * all) {
     const double of_list = table.period_frames.value_or(table.frames_per_cycle),
                  of_plate = alone->period_frames.value_or(alone->frames_per_cycle);
-    if (std::abs(of_list - of_plate) > kSamePeriod * of_plate)
+    if (std::abs(of_list - of_plate) > kMaxPeriodDifference * of_plate)
       refuse_list(fmt::format(
           "by the list there are {:.4g} frames per cycle, but the plate in the frames repeats itself "
           "after {:.4g} frames",
@@ -211,7 +213,7 @@ void check_list_by_plate(PhaseTable& table, std::span<const double> plate_px, bo
     return;
   }
   const double ahead = std::atan2(fit[2], fit[1]) / kTurn;  // cycles
-  if (sine && std::abs(ahead) * table.frames_per_cycle > kFarthest)
+  if (sine && std::abs(ahead) * table.frames_per_cycle > kMaxPhaseDifference)
     refuse_list(
         fmt::format("the plate in the frames is {:.3g} of a cycle {} than the phases of the list state",
                     std::abs(ahead), ahead > 0 ? "later in its cycle" : "earlier in its cycle"));
@@ -219,27 +221,27 @@ void check_list_by_plate(PhaseTable& table, std::span<const double> plate_px, bo
 }
 
 void check_lock_by_bed(PhaseTable& table, const BedMotion& motion) {
-  constexpr double kCertain = 1.0 / 3;  // jitter of the bed's cycles, frames
-  constexpr double kAgree = 0.15;       // the same after slips
-  constexpr double kLeastRise = 0.02;   // of the bed, bead diameters
-  constexpr std::size_t kCycles = 3;
+  constexpr double kMaxJitter = 1.0 / 3;         // of the bed's cycles, frames
+  constexpr double kMaxJitterAfterSlips = 0.15;  // frames
+  constexpr double kMinRise = 0.02;              // of the bed, bead diameters
+  constexpr std::size_t kMinCycles = 3;
   const auto cannot = [&](const std::string& why) { table.not_checked += ", and " + why; };
   const auto n = static_cast<std::size_t>(table.frames_per_cycle);
-  if (motion.heights.size() < kCycles * n)
+  if (motion.heights.size() < kMinCycles * n)
     return cannot(fmt::format("{} frames are less than three cycles of the bed", motion.heights.size()));
   const auto [low, high] = std::minmax_element(motion.heights.begin(), motion.heights.end());
-  if (!(*high - *low > kLeastRise)) return cannot("the bed is at rest");
+  if (!(*high - *low > kMinRise)) return cannot("the bed is at rest");
   PhaseTable found;
   try {
     found = estimate_phases(motion, {.frames_per_cycle = table.frames_per_cycle, .gamma = {}});
   } catch (const InputError&) {
     return cannot("the bed's motion does not repeat itself after so many frames");
   }
-  if (!(found.jitter.value_or(1) < kCertain))
+  if (!(found.jitter.value_or(1) < kMaxJitter))
     return cannot(fmt::format("the bed's cycles differ by up to {:.2g} frames", found.jitter.value_or(1)));
   const bool slips = found.dropped + found.doubled > 0;
   // Cycles that differ look like slips that come and go. After true slips the cycles agree closely.
-  if (slips && !(found.jitter.value_or(1) < kAgree))
+  if (slips && !(found.jitter.value_or(1) < kMaxJitterAfterSlips))
     return cannot("the bed's cycles differ as if frames were missing (compare --phase-lock found)");
   table.checked_by = "the bed";
   table.not_checked.clear();

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a most likely path of phases pays for frames that are missing or doubled, in natural log-odds.
+/// Costs of missing and doubled frames in the most likely path of phases, in natural log-odds.
 
 namespace twincell::imaging {
 

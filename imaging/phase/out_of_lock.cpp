@@ -8,8 +8,10 @@
 namespace twincell::imaging {
 
 std::vector<FrameStretch> stretches_out_of_lock(std::span<const double> misses, double period) {
-  constexpr double kFewest = 3, kShare = 0.5, kInside = 0.5, kAtEnd = 0.25;
-  const double near = std::max(kFewest, 0.5 * period);  // frames
+  constexpr double kMinFrames = 3;
+  constexpr double kMinShareOff = 0.5;  // of the frames in which the plate is seen
+  constexpr double kMinLengthInside = 0.5, kMinLengthAtEnd = 0.25;  // of a stretch, periods
+  const double near = std::max(kMinFrames, 0.5 * period);           // frames
   std::vector<FrameStretch> groups;
   for (std::size_t f = 0; f < misses.size(); ++f) {
     if (!(misses[f] > 1)) continue;
@@ -25,9 +27,9 @@ std::vector<FrameStretch> stretches_out_of_lock(std::span<const double> misses, 
     }
     const bool begins = static_cast<double>(g.first) < near,
                ends = static_cast<double>(misses.size() - 1 - g.last) < near;
-    const double least = std::max(kFewest, (begins || ends ? kAtEnd : kInside) * period);
-    if (off < kFewest || static_cast<double>(g.size()) < least || off < kShare * seen) continue;
-    // The few frames beyond it at an end of the film are no whole cycle, and cross the sine by chance.
+    const double least = std::max(kMinFrames, (begins || ends ? kMinLengthAtEnd : kMinLengthInside) * period);
+    if (off < kMinFrames || static_cast<double>(g.size()) < least || off < kMinShareOff * seen) continue;
+    // The few frames between it and the end of the film are less than a cycle, and cross the sine by chance.
     if (begins) g.first = 0;
     if (ends) g.last = misses.size() - 1;
     out.push_back(g);
@@ -42,14 +44,14 @@ std::size_t frames_in(std::span<const FrameStretch> stretches) {
 }
 
 std::string in_words(std::span<const FrameStretch> stretches) {
-  constexpr std::size_t kMostNamed = 8;
+  constexpr std::size_t kMaxNamed = 8;
   std::string text;
-  for (std::size_t i = 0; i < std::min(stretches.size(), kMostNamed); ++i) {
+  for (std::size_t i = 0; i < std::min(stretches.size(), kMaxNamed); ++i) {
     const FrameStretch& s = stretches[i];
     text += i == 0 ? "" : i + 1 == stretches.size() ? " and " : ", ";
     text += s.first == s.last ? fmt::format("{}", s.first) : fmt::format("{} to {}", s.first, s.last);
   }
-  return stretches.size() > kMostNamed ? text + ", ..." : text;
+  return stretches.size() > kMaxNamed ? text + ", ..." : text;
 }
 
 }  // namespace twincell::imaging

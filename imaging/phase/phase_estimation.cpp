@@ -16,13 +16,13 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr std::size_t kMostLags = 2000;
-constexpr std::size_t kMostFrames = 20000;   // used for the period; the phases are estimated for all frames
+constexpr std::size_t kMaxLags = 2000;
+constexpr std::size_t kMaxFrames = 20000;    // used for the period; the phases are estimated for all frames
 constexpr double kPeriodDip = 0.2;           // largest normalised difference at a period
 constexpr double kPeriodDipOfMedian = 0.03;  // the same for its median, which falls sooner
 constexpr double kGivenPeriodDip = 0.8;      // the same for a given period
-constexpr std::size_t kMostDropped = 20;     // in a row
-constexpr double kCertain = 40;              // odds beyond the evidence of any picture, treated as certainty
+constexpr std::size_t kMaxDropped = 20;      // in a row
+constexpr double kMaxLogOdds = 40;           // beyond the evidence of any picture, treated as certainty
 
 /// Rise of the bed since the previous frame, for each frame; 0 for the first. Steps are used because their
 /// errors are independent and free of drift, whereas the errors of heights accumulate.
@@ -89,14 +89,14 @@ std::vector<std::size_t> likely_periods(const Steps& steps, int given, bool at_r
                                           ? "the bed is at rest, its mean height changes by less than 0.02 "
                                             "bead diameters, and a bed at rest shows no phases"
                                           : "the bed's motion does not repeat itself";
-  constexpr std::size_t kFewest = 3;
+  constexpr std::size_t kMinPeriod = 3;  // frames
   const std::string too_few = "a cycle has fewer than three frames";
-  if (given > 0 && static_cast<std::size_t>(given) < kFewest) refuse(too_few);
-  const std::size_t n = std::min(steps.size(), kMostFrames);
+  if (given > 0 && static_cast<std::size_t>(given) < kMinPeriod) refuse(too_few);
+  const std::size_t n = std::min(steps.size(), kMaxFrames);
   if (n < 9 || (given > 0 && n < 3 * static_cast<std::size_t>(given)))
     refuse(fmt::format("{} frames are too few to contain three cycles", steps.size()));
   const std::span<const double> v = std::span(steps).subspan(1, n - 1);
-  const std::size_t lags = std::min(kMostLags, v.size() / 2);
+  const std::size_t lags = std::min(kMaxLags, v.size() / 2);
   const std::vector<double> mean = normalised_difference(v, lags, false),
                             median = normalised_difference(v, lags, true);
   if (given > 0) {
@@ -107,8 +107,8 @@ std::vector<std::size_t> likely_periods(const Steps& steps, int given, bool at_r
   }
   std::vector<std::size_t> periods;
   const std::size_t of_mean = first_dip(mean, kPeriodDip), of_median = first_dip(median, kPeriodDipOfMedian);
-  if (of_mean >= kFewest) periods.push_back(of_mean);
-  if (of_median >= kFewest && of_median != of_mean) periods.push_back(of_median);
+  if (of_mean >= kMinPeriod) periods.push_back(of_mean);
+  if (of_median >= kMinPeriod && of_median != of_mean) periods.push_back(of_median);
   if (periods.empty()) refuse(of_mean + of_median > 0 ? too_few : does_not_repeat);
   return periods;
 }
@@ -122,7 +122,7 @@ class SlipCosts {
       : repeats_(repeats), usual_(usual) {}
   [[nodiscard]] double operator()(std::size_t f, std::size_t k, std::size_t steps) const {
     const double repeats = repeats_.empty() ? 0 : repeats_[f];
-    // If the alternative move looks like a repetition in every cycle, a repetition is no evidence.
+    // If the alternative move looks like a repetition in every cycle, a repetition is not evidence.
     const bool is_evidence = repeats < 0 || usual_[steps == 0 ? (k + 1) % usual_.size() : k] < 0;
     if (steps == 0) return std::max(0.0, kSlipCost - (is_evidence ? repeats : 0));
     const double moved = is_evidence ? std::max(0.0, repeats) : 0;
@@ -146,7 +146,7 @@ Path likeliest_path(const Steps& steps, std::span<const double> wave, std::span<
                     double sigma, const SlipCosts& slip_cost) {
   // Weights: deviations of one cycle from another last for several frames, so frames are not independent.
   constexpr double kIndependent = 20;  // independent frames in a cycle
-  const std::size_t n = wave.size(), most = std::min(kMostDropped + 1, n - 1);
+  const std::size_t n = wave.size(), most = std::min(kMaxDropped + 1, n - 1);
   const double independent = std::min(1.0, kIndependent / static_cast<double>(n));
   std::vector<double> weight(n), constant(n);
   for (std::size_t k = 0; k < n; ++k) {
@@ -240,8 +240,8 @@ double range_of(const std::vector<double>& wave) {
   return *highest - *lowest;
 }
 
-/// First frame of the two consecutive cycles that are most alike, where no frame is missing.
-std::size_t most_alike(const Steps& steps, std::size_t n) {
+/// First frame of the two most similar consecutive cycles, where no frame is missing.
+std::size_t most_similar_cycles(const Steps& steps, std::size_t n) {
   double squares = 0, least = std::numeric_limits<double>::infinity();
   std::size_t begin = 1;
   const auto square = [&](std::size_t f) { return std::pow(steps[f + n] - steps[f], 2); };
@@ -261,7 +261,7 @@ Fit fit_period(const Steps& steps, const BedMotion& motion, std::size_t n) {
   Fit fit{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n, -1.0),
           std::vector<std::int64_t>(steps.size()), 0};
   std::iota(fit.ticks.begin(), fit.ticks.end(), 0);
-  const std::size_t begin = most_alike(steps, n);
+  const std::size_t begin = most_similar_cycles(steps, n);
   const auto in_these = [&](std::size_t f) { return f >= begin && f < begin + 2 * n; };
   learn(steps, fit.ticks, fit.step_wave, in_these);
   if (!motion.repeats.empty()) learn(motion.repeats, fit.ticks, fit.usual_repeats, in_these);
@@ -275,7 +275,7 @@ Fit fit_period(const Steps& steps, const BedMotion& motion, std::size_t n) {
     if (!motion.repeats.empty())
       learn(motion.repeats, fit.ticks, fit.usual_repeats, [](std::size_t f) { return f > 0; });
     // Scatter: deviations are capped, so that misplaced frames do not increase the scatter and stay hidden.
-    constexpr double kWild = 0.2, kLeast = 0.02;  // fractions of the wave form's height
+    constexpr double kMaxDeviation = 0.2, kMinScatter = 0.02;  // fractions of the wave form's height
     constexpr double kFromMedian = 1.48;
     const double range = range_of(fit.step_wave);
     std::vector<double> misses(steps.size());
@@ -283,10 +283,10 @@ Fit fit_period(const Steps& steps, const BedMotion& motion, std::size_t n) {
     for (std::size_t f = 1; f < steps.size(); ++f) {
       if (!is_next(f)) continue;
       misses[f] = std::abs(steps[f] - fit.step_wave[static_cast<std::size_t>(fit.ticks[f]) % n]);
-      squares += std::pow(std::min(misses[f], kWild * range), 2);
+      squares += std::pow(std::min(misses[f], kMaxDeviation * range), 2);
       count += 1;
     }
-    fit.sigma = std::max({std::sqrt(squares / count), kLeast * range, 1e-9});
+    fit.sigma = std::max({std::sqrt(squares / count), kMinScatter * range, 1e-9});
     // A bed never lands at the same instant twice, so frames at the landing have little weight.
     learn(misses, fit.ticks, fit.step_scatter, is_next);
     for (double& scatter : fit.step_scatter) scatter *= kFromMedian;
@@ -406,19 +406,20 @@ std::vector<double> inelastic_bed(double gamma, int n) {
 }
 
 double log_odds_of_repeat(std::span<const double> steps) {
-  constexpr double kStill = 4, kOfBead = 3, kMovedOutweighs = 9;
+  constexpr double kMaxStillStep = 4;                      // standard deviations
+  constexpr double kLogOddsPerBead = 3, kMovedWeight = 9;  // a bead that moved outweighs nine that did not
   double still = 0, moved = 0;
   for (const double step : steps)
-    if (std::isfinite(step)) (step < kStill ? still : moved) += 1;
-  return std::clamp(kOfBead * (still - kMovedOutweighs * moved), -kCertain, kCertain);
+    if (std::isfinite(step)) (step < kMaxStillStep ? still : moved) += 1;
+  return std::clamp(kLogOddsPerBead * (still - kMovedWeight * moved), -kMaxLogOdds, kMaxLogOdds);
 }
 
 PhaseTable estimate_phases(const BedMotion& motion, const PhaseEstimationOptions& options) {
   // Period: of the candidates the one with the smallest cost at a common scatter.
-  constexpr double kLeastRise = 0.02;  // bead diameters
+  constexpr double kMinRise = 0.02;  // bead diameters
   const Steps steps = steps_of(motion.heights);
   const auto [low, high] = std::minmax_element(motion.heights.begin(), motion.heights.end());
-  const bool at_rest = low == high || *high - *low < kLeastRise;
+  const bool at_rest = low == high || *high - *low < kMinRise;
   std::optional<Fit> best;
   for (const std::size_t n : likely_periods(steps, options.frames_per_cycle, at_rest)) {
     Fit fit = fit_period(steps, motion, n);

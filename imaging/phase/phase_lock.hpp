@@ -92,7 +92,7 @@ struct PhaseTable {
   double offset = 0;                ///< frame intervals by which every frame was taken later than its phase
   /// Frames without a phase, in which the plate does not follow the drive
   std::vector<FrameStretch> out_of_lock;
-  std::int64_t between = 0;  ///< frames between two phases, of a period that is no whole number of frames
+  std::int64_t between = 0;  ///< frames between two phases, of a period that is not a whole number of frames
   std::string checked_by;    ///< "the plate", "the time stamps" or "the bed"; empty: unchecked
   std::string not_checked;   ///< why a fixed lock could not be checked
   std::string warning;       ///< how a fixed lock contradicts the stack; empty: it does not

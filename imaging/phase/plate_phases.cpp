@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/constants.hpp"
-#include "core/counted.hpp"
+#include "core/plural.hpp"
 #include "imaging/phase/phases_of_times.hpp"
 
 namespace twincell::imaging {
@@ -15,15 +15,15 @@ namespace twincell::imaging {
 namespace {
 
 bool moves(double amplitude, double scatter) {
-  constexpr double kLeast_px = 1, kMostScatter = 0.15;
-  return amplitude >= kLeast_px && scatter <= kMostScatter * amplitude;
+  constexpr double kMinAmplitude_px = 1, kMaxScatter = 0.15;  // scatter as a fraction of the amplitude
+  return amplitude >= kMinAmplitude_px && scatter <= kMaxScatter * amplitude;
 }
 
 /// Cost of a sine, natural log-odds: each missing or doubled frame costs what twelve nats of deviation do.
 double cost(std::size_t frames, double scatter, double amplitude, std::int64_t slips) {
-  constexpr double kSlip = 12, kLeastScatter = 0.02;
-  return static_cast<double>(frames) * std::log(std::max(scatter / amplitude, kLeastScatter)) +
-         kSlip * static_cast<double>(slips);
+  constexpr double kCostPerSlip = 12, kMinScatter = 0.02;  // scatter as a fraction of the amplitude
+  return static_cast<double>(frames) * std::log(std::max(scatter / amplitude, kMinScatter)) +
+         kCostPerSlip * static_cast<double>(slips);
 }
 
 std::int64_t number_of_slips(const SineSlips& fit) {
@@ -39,9 +39,10 @@ double cost(const SineSlips& fit) {
 /// How the motion of a plate that follows no single sine differs between begin and end, each of which does
 /// follow one; empty if it does not.
 std::string change_of(std::span<const double> plate, int frames_per_cycle) {
-  constexpr std::size_t kCycles = 3;
-  constexpr double kAlike = 0.1;
-  const std::size_t part = std::min(plate.size() / 2, kCycles * static_cast<std::size_t>(frames_per_cycle));
+  constexpr std::size_t kComparedCycles = 3;       // at either end
+  constexpr double kMaxAmplitudeDifference = 0.1;  // relative
+  const std::size_t part =
+      std::min(plate.size() / 2, kComparedCycles * static_cast<std::size_t>(frames_per_cycle));
   if (part < static_cast<std::size_t>(frames_per_cycle)) return {};
   const auto begin = fit_sine_with_slips(plate.first(part), frames_per_cycle),
              end = fit_sine_with_slips(plate.last(part), frames_per_cycle);
@@ -49,7 +50,8 @@ std::string change_of(std::span<const double> plate, int frames_per_cycle) {
     return fit && moves(fit->amplitude, fit->scatter) && fit->dropped + fit->doubled == 0;
   };
   if (!is_clear(begin) || !is_clear(end)) return {};
-  if (std::abs(begin->amplitude - end->amplitude) <= kAlike * std::max(begin->amplitude, end->amplitude))
+  if (std::abs(begin->amplitude - end->amplitude) <=
+      kMaxAmplitudeDifference * std::max(begin->amplitude, end->amplitude))
     return {};
   return fmt::format("moves by {:.3g} px in the first {} frames and by {:.3g} px in the last {}",
                      begin->amplitude, part, end->amplitude, part);
@@ -59,8 +61,9 @@ std::string change_of(std::span<const double> plate, int frames_per_cycle) {
 template <class SineOfFrame>
 std::vector<double> misses_of(std::span<const double> plate, double amplitude, double scatter,
                               const SineOfFrame& sine) {
-  constexpr double kErrors = 5, kShare = 0.1, kLeast_px = 1;
-  const double most = std::max({kErrors * scatter, kShare * amplitude, kLeast_px});
+  // Allowed distance: the largest of a multiple of the scatter, a fraction of the amplitude, and 1 px.
+  constexpr double kAllowedScatter = 5, kAllowedShare = 0.1, kAllowed_px = 1;
+  const double most = std::max({kAllowedScatter * scatter, kAllowedShare * amplitude, kAllowed_px});
   std::vector<double> misses;
   for (std::size_t f = 0; f < plate.size(); ++f) misses.push_back(std::abs(plate[f] - sine(f)) / most);
   return misses;
@@ -69,10 +72,11 @@ std::vector<double> misses_of(std::span<const double> plate, double amplitude, d
 /// read_plate() with the sine of any period. \param free_sine gives it; called where it is needed
 template <class FreeSineSource>
 PlateReading read(std::span<const double> plate, int frames_per_cycle, const FreeSineSource& free_sine) {
-  constexpr double kSeen = 0.6, kSamePeriod = 0.5;
+  constexpr double kMinSeenShare = 0.6;  // of the frames
+  constexpr double kMaxDrift = 0.5;      // between the stated and the free sine over the film, frames
   PlateReading out;
   const auto seen = std::count_if(plate.begin(), plate.end(), [](double z) { return std::isfinite(z); });
-  if (static_cast<double>(seen) < kSeen * static_cast<double>(plate.size()) || seen == 0) {
+  if (static_cast<double>(seen) < kMinSeenShare * static_cast<double>(plate.size()) || seen == 0) {
     out.why_not = "the plate is not in the picture";
     return out;
   }
@@ -81,7 +85,7 @@ PlateReading read(std::span<const double> plate, int frames_per_cycle, const Fre
     return out;
   }
   if (plate.size() < static_cast<std::size_t>(frames_per_cycle)) {
-    out.why_not = fmt::format("{} are less than a cycle", counted(plate.size(), "frame"));
+    out.why_not = fmt::format("{} are less than a cycle", plural(plate.size(), "frame"));
     return out;
   }
   std::optional<SineSlips> fit = fit_sine_with_slips(plate, frames_per_cycle);
@@ -90,8 +94,7 @@ PlateReading read(std::span<const double> plate, int frames_per_cycle, const Fre
     const std::optional<FreeSine> free = free_sine();
     if (free && moves(free->amplitude, free->scatter)) {
       const double drift = std::abs(frames_per_cycle / free->period - 1) * static_cast<double>(plate.size());
-      if ((!fits || cost(plate.size(), free->scatter, free->amplitude, 0) < cost(*fit)) &&
-          drift > kSamePeriod)
+      if ((!fits || cost(plate.size(), free->scatter, free->amplitude, 0) < cost(*fit)) && drift > kMaxDrift)
         out.other = free;
     }
   }
@@ -101,13 +104,13 @@ PlateReading read(std::span<const double> plate, int frames_per_cycle, const Fre
     out.out_of_lock = stretches_out_of_lock(misses, frames_per_cycle);
     out.misread = static_cast<std::size_t>(
         std::count_if(misses.begin(), misses.end(), [](double miss) { return miss > 1; }));
-    constexpr double kFar = 3;
+    constexpr double kFarMiss = 3;  // in units of the allowed distance
     out.far_off = static_cast<std::size_t>(
-        std::count_if(misses.begin(), misses.end(), [](double miss) { return miss > kFar; }));
+        std::count_if(misses.begin(), misses.end(), [](double miss) { return miss > kFarMiss; }));
     for (const FrameStretch& s : out.out_of_lock)
       for (std::size_t f = s.first; f <= s.last; ++f) {
         out.misread -= misses[f] > 1 ? 1 : 0;
-        out.far_off -= misses[f] > kFar ? 1 : 0;
+        out.far_off -= misses[f] > kFarMiss ? 1 : 0;
       }
     out.slips = std::move(fit);
   } else if (const std::string changes = change_of(plate, frames_per_cycle); !changes.empty())
@@ -117,11 +120,12 @@ PlateReading read(std::span<const double> plate, int frames_per_cycle, const Fre
   return out;
 }
 
-/// Phases of a plate whose period is no whole number of frames; nothing if it does not move as a sine.
+/// Phases of a plate whose period is not a whole number of frames; nothing if it does not move as a sine.
 std::optional<PhaseTable> phases_of_uneven(std::span<const double> plate, const std::optional<FreeSine>& sine,
                                            int stated) {
-  constexpr double kFewestPerCycle = 3;
-  if (!sine || !moves(sine->amplitude, sine->scatter) || sine->period < kFewestPerCycle) return std::nullopt;
+  constexpr double kMinFramesPerCycle = 3;
+  if (!sine || !moves(sine->amplitude, sine->scatter) || sine->period < kMinFramesPerCycle)
+    return std::nullopt;
   std::vector<double> cycles;
   for (std::size_t f = 0; f < plate.size(); ++f)
     cycles.push_back(static_cast<double>(f) / sine->period + sine->phase);

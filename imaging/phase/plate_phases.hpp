@@ -13,7 +13,7 @@
 
 namespace twincell::imaging {
 
-/// What the plate in the frames says about N frames per cycle.
+/// Evidence of the plate in the frames about N frames per cycle.
 struct PlateReading {
   std::optional<SineSlips>
       slips;  ///< its sine, with missing and doubled frames; absent: the plate cannot tell
@@ -36,11 +36,11 @@ PlateReading read_plate(std::span<const double> plate_px, int frames_per_cycle);
 
 /// Phases, missing and doubled frames from the plate alone: of the whole numbers of frames per cycle from
 /// 0.85 to 1.3 times the apparent period, which missing frames shorten, the one that costs least. If a sine
-/// whose period is no whole number of frames explains the heights better, the phases are those of its times
-/// (set_phases_of_times). Frames that are out of lock have no phase, and PhaseTable::warning names them.
-/// \param frames_per_cycle N if known; 0: searched for \param offset frame intervals by which every frame was
-/// taken later than its phase; not used where the period is no whole number \returns nothing if the plate
-/// cannot tell, or if its period differs from N by a frame or more
+/// whose period is not a whole number of frames explains the heights better, the phases are those of its
+/// times (set_phases_of_times). Frames that are out of lock have no phase, and PhaseTable::warning names
+/// them. \param frames_per_cycle N if known; 0: searched for \param offset frame intervals by which every
+/// frame was taken later than its phase; not used where the period is not a whole number \returns nothing if
+/// the plate cannot tell, or if its period differs from N by a frame or more
 std::optional<PhaseTable> phases_from_plate(std::span<const double> plate_px, int frames_per_cycle,
                                             double offset = 0);
 

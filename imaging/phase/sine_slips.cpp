@@ -15,9 +15,9 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr std::size_t kFewest = 8;
-constexpr double kMostOfFrame = 9;      // of one frame's deviation, so that one bad height makes no slip
-constexpr double kLeastScatter = 0.02;  // of the amplitude: a shaker is no exact sine
+constexpr std::size_t kMinHeights = 8;
+constexpr double kMaxFrameCost = 9;   // of one frame's deviation, so that one bad height makes no slip
+constexpr double kMinScatter = 0.02;  // fraction of the amplitude: a shaker does not follow a sine exactly
 
 /// z = c0 + c1 sin(omega t) + c2 cos(omega t).
 struct Sine {
@@ -65,7 +65,7 @@ double cost_of(std::span<const double> z, const Ticks& t, const Sine& sine, doub
   double cost = 0;
   for (std::size_t f = 0; f < z.size(); ++f) {
     const double miss = std::isfinite(z[f]) ? (z[f] - sine.at(static_cast<double>(t[f]))) / scatter : 0;
-    cost += std::min(0.5 * miss * miss, kMostOfFrame);
+    cost += std::min(0.5 * miss * miss, kMaxFrameCost);
     if (f == 0) continue;
     const std::int64_t by = t[f] - t[f - 1];
     if (by != 1)
@@ -100,7 +100,7 @@ Ticks likeliest_ticks(std::span<const double> z, const Sine& sine, double scatte
       if (const double stay = cost[k] + kSlipCost; stay < least) least = stay, by = 0;
       if (skip[k] < least) least = skip[k], by = skipped[k];
       const double miss = std::isfinite(z[f]) ? (z[f] - wave[k]) / scatter : 0;
-      next[k] = least + std::min(0.5 * miss * miss, kMostOfFrame);
+      next[k] = least + std::min(0.5 * miss * miss, kMaxFrameCost);
       advance[f * n + k] = by;
     }
     std::swap(cost, next);
@@ -137,7 +137,7 @@ std::optional<SineSlips> fit_sine_with_slips(std::span<const double> z, int fram
   SineSlips out;
   out.seen =
       static_cast<std::size_t>(std::count_if(z.begin(), z.end(), [](double v) { return std::isfinite(v); }));
-  if (n < 3 || n > 65000 || z.size() < n || out.seen < kFewest) return std::nullopt;
+  if (n < 3 || n > 65000 || z.size() < n || out.seen < kMinHeights) return std::nullopt;
   Ticks ticks(z.size());
   std::iota(ticks.begin(), ticks.end(), 0);
   Sine sine{.omega = kTurn / static_cast<double>(n)};
@@ -150,9 +150,10 @@ std::optional<SineSlips> fit_sine_with_slips(std::span<const double> z, int fram
     const Sine fixed_sine = sine;
     const Ticks fixed = ticks;
     // Start: the part that a sine fits best.
-    constexpr double kPart = 0.6;
+    constexpr double kPartLength = 0.6;  // cycles
     const std::size_t width = std::min(
-        z.size(), std::max(kFewest, static_cast<std::size_t>(std::ceil(kPart * static_cast<double>(n)))));
+        z.size(),
+        std::max(kMinHeights, static_cast<std::size_t>(std::ceil(kPartLength * static_cast<double>(n)))));
     double least = std::numeric_limits<double>::infinity();
     Sine best = sine;
     // A plate at rest fits a sine without amplitude exactly.
@@ -171,15 +172,16 @@ std::optional<SineSlips> fit_sine_with_slips(std::span<const double> z, int fram
     for (int round = 0; round < 5 && sine.amplitude() > 0; ++round) {
       ticks = likeliest_ticks(z, sine, scatter, n);
       // Frames of a plate at rest would flatten the sine.
-      constexpr double kFar = 0.5;  // of the amplitude
-      fit(z, ticks, 0, z.size(), sine, std::max(5 * scatter, round == 0 ? kFar * sine.amplitude() : 0));
-      scatter = std::max(robust_spread(deviations(z, ticks, sine)), kLeastScatter * sine.amplitude());
+      constexpr double kMaxFirstDeviation = 0.5;  // fraction of the amplitude, in the first round
+      fit(z, ticks, 0, z.size(), sine,
+          std::max(5 * scatter, round == 0 ? kMaxFirstDeviation * sine.amplitude() : 0));
+      scatter = std::max(robust_spread(deviations(z, ticks, sine)), kMinScatter * sine.amplitude());
     }
     // The path starts from one part of the film, so that without slips it must not fit nearly as well.
     Sine straight = fixed_sine;
     for (int round = 0; round < 3; ++round)
       fit(z, fixed, 0, z.size(), straight,
-          5 * std::max(robust_spread(deviations(z, fixed, straight)), kLeastScatter * straight.amplitude()));
+          5 * std::max(robust_spread(deviations(z, fixed, straight)), kMinScatter * straight.amplitude()));
     if (cost_of(z, fixed, straight, scatter) <= cost_of(z, ticks, sine, scatter)) {
       ticks = fixed;
       sine = straight;
@@ -203,10 +205,10 @@ std::optional<SineSlips> fit_sine_with_slips(std::span<const double> z, int fram
 }
 
 std::optional<FreeSine> fit_free_sine(std::span<const double> all) {
-  constexpr std::size_t kSearched = 2000;
-  std::span<const double> z = all.first(std::min(all.size(), kSearched));
+  constexpr std::size_t kSearchedFrames = 2000;
+  std::span<const double> z = all.first(std::min(all.size(), kSearchedFrames));
   if (std::count_if(z.begin(), z.end(), [](double v) { return std::isfinite(v); }) <
-      static_cast<std::ptrdiff_t>(kFewest))
+      static_cast<std::ptrdiff_t>(kMinHeights))
     return std::nullopt;
   Ticks ticks(all.size());
   std::iota(ticks.begin(), ticks.end(), 0);
@@ -220,10 +222,10 @@ std::optional<FreeSine> fit_free_sine(std::span<const double> all) {
   };
   const double whole = kTurn / static_cast<double>(z.size()), step = whole / 12;
   search(whole, 0.999 * std::numbers::pi, step);
-  constexpr double kFiner = 30;
+  constexpr double kRefinement = 30;  // ratio of the two steps of omega
   const double found = best.omega;
-  search(found - step, found + step, step / kFiner);
-  for (double known = step / kFiner; z.size() < all.size(); known /= 2) {
+  search(found - step, found + step, step / kRefinement);
+  for (double known = step / kRefinement; z.size() < all.size(); known /= 2) {
     z = all.first(std::min(all.size(), 2 * z.size()));
     least = std::numeric_limits<double>::infinity();
     const double middle = best.omega;
@@ -235,11 +237,12 @@ std::optional<FreeSine> fit_free_sine(std::span<const double> all) {
 }
 
 std::vector<int> frames_per_cycle_to_try(int stated, double apparent_period) {
-  constexpr std::size_t kMost = 23;
+  constexpr std::size_t kMaxTrials = 23;
   if (stated != 0) return {stated};
   std::vector<int> all;
   const int last = static_cast<int>(1.3 * apparent_period) + 1;
-  for (int n = std::max(3, static_cast<int>(0.85 * apparent_period)); n <= last && all.size() < kMost; ++n)
+  for (int n = std::max(3, static_cast<int>(0.85 * apparent_period)); n <= last && all.size() < kMaxTrials;
+       ++n)
     all.push_back(n);
   return all;
 }

@@ -18,18 +18,7 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr double kMostCycles = 1e15;
-
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream in(line);
-  for (std::string cell; std::getline(in, cell, ',');) {
-    const auto begin = cell.find_first_not_of(" \t"), end = cell.find_last_not_of(" \t");
-    cells.push_back(begin == std::string::npos ? "" : cell.substr(begin, end - begin + 1));
-  }
-  if (line.ends_with(',')) cells.emplace_back();
-  return cells;
-}
+constexpr double kMaxCycles = 1e15;
 
 /// Reads the list and returns the cycles elapsed at each frame; NaN for a frame without a time.
 std::vector<double> read_cycles(const std::filesystem::path& file, std::optional<double> drive_hz) {
@@ -47,7 +36,7 @@ std::vector<double> read_cycles(const std::filesystem::path& file, std::optional
     return false;
   };
   if (!next_line()) refuse("", "the list of triggers is empty.");
-  const std::vector<std::string> names = split(line);
+  const std::vector<std::string> names = field_texts(line);
   check_column_names(names, Where{.file = file.string(), .line = number, .key = {}});
   auto column = [&](const char* name) { return std::find(names.begin(), names.end(), name) - names.begin(); };
   const auto n = static_cast<std::ptrdiff_t>(names.size());
@@ -63,7 +52,7 @@ std::vector<double> read_cycles(const std::filesystem::path& file, std::optional
   double first = std::numeric_limits<double>::infinity(), last = -first;
   std::size_t timed = 0;
   while (next_line()) {
-    const std::vector<std::string> cells = split(line);
+    const std::vector<std::string> cells = field_texts(line);
     if (cells.size() != names.size())
       refuse("", fmt::format("{} fields; the header line has {}.", cells.size(), names.size()));
     auto value = [&](std::ptrdiff_t at) {
@@ -83,7 +72,7 @@ std::vector<double> read_cycles(const std::filesystem::path& file, std::optional
       continue;
     }
     const double now = cycle < n ? value(cycle) : value(time) * *drive_hz;
-    if (std::abs(now) > kMostCycles) refuse(cycle < n ? "cycles" : "time_s", "the time exceeds 1e15 cycles.");
+    if (std::abs(now) > kMaxCycles) refuse(cycle < n ? "cycles" : "time_s", "the time exceeds 1e15 cycles.");
     if (now < last)
       refuse(cycle < n ? "cycles" : "time_s",
              "the time decreases; frames must be in the order in which they were taken.");

@@ -23,8 +23,8 @@ double scaled(double i, int n) {
 double contrast_of(const cv::Mat1f& darkness) {
   constexpr double kSamples = 40000, kLow = -0.5, kHigh = 1.5;
   constexpr std::size_t kBins = 200;
-  constexpr double kEnough = 0.6;  // darker discs need no scaling
-  constexpr double kClear = 6;     // smallest difference of the classes, standard deviations of the noise
+  constexpr double kMaxScaledDarkness = 0.6;  // darker discs need no scaling
+  constexpr double kMinDifference = 6;        // of the two classes, standard deviations of the noise
   const int stride =
       std::max(1, static_cast<int>(std::sqrt(static_cast<double>(darkness.total()) / kSamples)));
   std::array<double, kBins> share{};
@@ -48,23 +48,25 @@ double contrast_of(const cv::Mat1f& darkness) {
     const double between = below * (n - below) * (high - low) * (high - low);
     if (between > best) best = between, light = low, dark = high;
   }
-  if (best == 0 || dark > kEnough) return 1;
+  if (best == 0 || dark > kMaxScaledDarkness) return 1;
   const Noise noise = noise_of(darkness);
-  return dark - light > kClear * std::sqrt(noise.dark + noise.light) ? std::max(dark, 0.02) : 1;
+  return dark - light > kMinDifference * std::sqrt(noise.dark + noise.light) ? std::max(dark, 0.02) : 1;
 }
 
 Noise noise_of(const cv::Mat1f& darkness) {
-  constexpr float kLight = 0.15F, kDark = 0.85F;
-  constexpr std::size_t kEnough = 50;
-  constexpr double kSamples = 20000, kLeast = 1e-6, kLeastShare = 0.1;
+  constexpr float kMaxLight = 0.15F, kMinDark = 0.85F;  // darkness of light and of dark pixels
+  constexpr std::size_t kMinPixels = 50;                // of a class
+  constexpr double kSamples = 20000;                    // pixels
+  constexpr double kMinVariance = 1e-6;
+  constexpr double kMinDarkVariance = 0.1;  // fraction of the variance of light pixels
   std::vector<float> light, dark;
   const int stride = std::max(1, static_cast<int>(static_cast<double>(darkness.total()) / kSamples));
   for (int y = stride / 2; y < darkness.rows; y += stride) {
     const float* d = darkness[y];
     for (int x = 1; x + 1 < darkness.cols; ++x) {
       const float low = std::min({d[x - 1], d[x], d[x + 1]}), high = std::max({d[x - 1], d[x], d[x + 1]});
-      if (high < kLight) light.push_back(std::abs(d[x - 1] - 2 * d[x] + d[x + 1]));
-      if (low > kDark) dark.push_back(std::abs(d[x - 1] - 2 * d[x] + d[x + 1]));
+      if (high < kMaxLight) light.push_back(std::abs(d[x - 1] - 2 * d[x] + d[x + 1]));
+      if (low > kMinDark) dark.push_back(std::abs(d[x - 1] - 2 * d[x] + d[x + 1]));
     }
   }
   const auto variance = [&](std::vector<float>& v) {
@@ -73,11 +75,11 @@ Noise noise_of(const cv::Mat1f& darkness) {
     const auto middle = static_cast<double>(lower_quantile(std::move(v), 0.5));
     return middle * middle * kFromMedian;
   };
-  if (light.size() < kEnough) return {};
-  const double lit = std::max(kLeast, variance(light));
-  const double black = dark.size() < kEnough ? lit : variance(dark);
+  if (light.size() < kMinPixels) return {};
+  const double lit = std::max(kMinVariance, variance(light));
+  const double black = dark.size() < kMinPixels ? lit : variance(dark);
   Noise n;
-  n.dark = std::max({kLeast, kLeastShare * lit, black});
+  n.dark = std::max({kMinVariance, kMinDarkVariance * lit, black});
   n.light = std::max(0.0, lit - n.dark);
   return n;
 }
@@ -99,11 +101,11 @@ Surface surface_basis(double x, double y, cv::Size size) {
 }
 
 double blur_of(const cv::Mat1f& darkness) {
-  constexpr float kEdge = 0.05F;                       // darkness per pixel
-  constexpr double kSteepest = 0.01, kDarkest = 0.05;  // shares of the pixels
-  constexpr double kLeast = 0.5, kMost = 5;            // px
-  constexpr double kKernel = 0.5;     // px^2; approximate blur of an edge by the kernel itself
-  constexpr double kSamples = 20000;  // number of pixels that are sampled
+  constexpr float kMinSlope = 0.05F;                             // darkness per pixel
+  constexpr double kSteepestShare = 0.01, kDarkestShare = 0.05;  // of the pixels
+  constexpr double kMinBlur = 0.5, kMaxBlur = 5;                 // px
+  constexpr double kKernelVariance = 0.5;  // px^2; approximate blur of an edge by the kernel itself
+  constexpr double kSamples = 20000;       // number of pixels that are sampled
   const int stride = std::max(1, cvRound(std::sqrt(static_cast<double>(darkness.total()) / kSamples)));
   std::vector<float> steep, seen;
   for (int y = 1; y + 1 < darkness.rows; y += stride) {
@@ -116,18 +118,18 @@ double blur_of(const cv::Mat1f& darkness) {
                   up = 3 * (above[x - 1] + above[x + 1]) + 10 * above[x],
                   down = 3 * (below[x - 1] + below[x + 1]) + 10 * below[x];
       const float across = (right - left) / 32, along = (down - up) / 32;
-      if (const float g2 = across * across + along * along; g2 > kEdge * kEdge) steep.push_back(g2);
+      if (const float g2 = across * across + along * along; g2 > kMinSlope * kMinSlope) steep.push_back(g2);
     }
   }
-  if (steep.empty()) return kLeast;
+  if (steep.empty()) return kMinBlur;
   const auto highest = [](std::vector<float>& values, double share) {
     const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
     std::nth_element(values.begin(), values.begin() + at, values.end(), std::greater<>());
     return static_cast<double>(values[static_cast<std::size_t>(at)]);
   };
-  const double dark = std::min(1.0, highest(seen, kDarkest));
-  const double variance = dark * dark / (2 * std::numbers::pi * highest(steep, kSteepest));
-  return std::clamp(std::sqrt(std::max(0.0, variance - kKernel)), kLeast, kMost);
+  const double dark = std::min(1.0, highest(seen, kDarkestShare));
+  const double variance = dark * dark / (2 * std::numbers::pi * highest(steep, kSteepestShare));
+  return std::clamp(std::sqrt(std::max(0.0, variance - kKernelVariance)), kMinBlur, kMaxBlur);
 }
 
 }  // namespace twincell::imaging

@@ -87,23 +87,26 @@ cv::Mat1d sum_of(FrameSource& stack, int& frames) {
 }  // namespace
 
 cv::Mat1f flat_of_blank(FrameSource& blank) {
-  constexpr double kTypical = 0.9, kWall = 0.2;
+  constexpr double kTypicalQuantile = 0.9;  // of the levels
+  constexpr double kMaxWallLevel = 0.2;     // fraction of the typical level
   int frames = 0;
   const cv::Mat1d sum = sum_of(blank, frames);
   std::vector<double> sorted(sum.begin(), sum.end());
-  const auto at = static_cast<std::ptrdiff_t>(kTypical * static_cast<double>(sorted.size() - 1));
+  const auto at = static_cast<std::ptrdiff_t>(kTypicalQuantile * static_cast<double>(sorted.size() - 1));
   std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
   const double typical = sorted[static_cast<std::size_t>(at)];
   if (!(typical > 0)) refuse(blank, "contains no light; no flat field can be computed from it.");
   cv::Mat1f flat;
   sum.convertTo(flat, CV_32F, 1 / typical);
-  flat.setTo(1, flat < kWall);
+  flat.setTo(1, flat < kMaxWallLevel);
   return flat;
 }
 
 cv::Mat1f flat_of_stack(FrameSource& first, FrameSource& second) {
-  constexpr double kAsBright = 0.9, kLeast = 0.5, kDrawn = 2;
-  constexpr int kAround = 1, kClear = 3;  // px
+  constexpr double kMinBrightness = 0.9;  // of a pixel without beads, fraction of its largest brightness
+  constexpr double kMinLight = 0.5;       // darker pixels are walls; share of the light
+  constexpr double kPriorFrames = 2;      // frames of level 1 that the mean of a pixel starts from
+  constexpr int kNeighbours = 1, kWallMargin = 3;  // px
   // First reading: the largest brightness of each pixel, smoothed against noise.
   cv::Mat1f brightest;
   for (cv::Mat frame; first.next(frame);) {
@@ -112,17 +115,17 @@ cv::Mat1f flat_of_stack(FrameSource& first, FrameSource& second) {
   }
   if (brightest.empty()) refuse(first, "contains no frames.");
   // Second reading: the mean of each pixel over the frames in which no bead darkens it or its neighbours.
-  const cv::Mat1f enough = kAsBright * brightest;
+  const cv::Mat1f enough = kMinBrightness * brightest;
   cv::Mat1f sum = cv::Mat1f::zeros(brightest.size()), count = sum.clone();
   for (cv::Mat frame; second.next(frame);) {
     const cv::Mat1f light = share_of_light(frame);
-    const cv::Mat1f over = least_within(smoothed(light) - enough, kAround);
+    const cv::Mat1f over = least_within(smoothed(light) - enough, kNeighbours);
     const cv::Mat1b seen = over >= 0;
     cv::add(sum, light, sum, seen);
     cv::add(count, 1, count, seen);
   }
-  cv::Mat1f flat = (sum + kDrawn) / (count + kDrawn);
-  flat.setTo(1, least_within(brightest, kClear) < kLeast);
+  cv::Mat1f flat = (sum + kPriorFrames) / (count + kPriorFrames);
+  flat.setTo(1, least_within(brightest, kWallMargin) < kMinLight);
   return flat;
 }
 

@@ -124,7 +124,7 @@ Prepared prepare(const cv::Mat& grey, const PreprocessOptions& options, double r
   cv::Mat1f with_spare(size.height, size.width + kSpareColumns);
   with_spare.colRange(size.width, with_spare.cols).setTo(kUnseen);
   p.darkness = with_spare.colRange(0, size.width);
-  constexpr float kLeastLight = 1e-20F;
+  constexpr float kMinLight = 1e-20F;
   const auto gain = static_cast<float>(1 / options.contrast);
   std::vector<float> grey_levels(static_cast<std::size_t>(size.width));
   for (int y = 0; y < size.height; ++y) {
@@ -133,7 +133,7 @@ Prepared prepare(const cv::Mat& grey, const PreprocessOptions& options, double r
     const float* i = grey_levels.data();
     float* d = p.darkness[y];
     for (int x = 0; x < size.width; ++x) {
-      const float bright = light.at(x), dark = (1 - i[x] / std::max(bright, kLeastLight)) * gain;
+      const float bright = light.at(x), dark = (1 - i[x] / std::max(bright, kMinLight)) * gain;
       const float above = dark > -1 ? dark : -1.0F, bounded = above > 2 ? 2.0F : above;
       d[x] = bright > 0 ? bounded : 0.0F;
     }

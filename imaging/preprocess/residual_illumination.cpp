@@ -48,7 +48,7 @@ Eigen::VectorXd plate(const Sparse& bend, const Eigen::VectorXd& mean, const Eig
 }  // namespace
 
 bool has_ripple(const cv::Mat1d& mean, const cv::Mat1d& variance) {
-  constexpr double kClear = 5;
+  constexpr double kMinSignificance = 5;  // standard deviations
   double together = 0, squares = 0;
   const auto pair = [&](int x, int y, int to_x, int to_y) {
     const double product = mean(y, x) * mean(to_y, to_x) / std::sqrt(variance(y, x) * variance(to_y, to_x));
@@ -60,7 +60,7 @@ bool has_ripple(const cv::Mat1d& mean, const cv::Mat1d& variance) {
       if (x + 1 < mean.cols) pair(x, y, x + 1, y);
       if (y + 1 < mean.rows) pair(x, y, x, y + 1);
     }
-  return together > kClear * std::sqrt(squares);
+  return together > kMinSignificance * std::sqrt(squares);
 }
 
 cv::Mat1f smooth_ripple(const cv::Mat1d& mean, const cv::Mat1d& variance) {

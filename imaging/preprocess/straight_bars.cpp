@@ -32,13 +32,13 @@ int line_count(Border border, cv::Size size) {
 
 namespace {
 
-constexpr int kLight = 3;             // px; least width of the light behind a bar
-constexpr int kThinnest = 4;          // px
-constexpr float kDark = 0.5F;         // least darkness
-constexpr double kStraight = 0.4;     // px; largest distance from the local median of the outer side
-constexpr double kShare = 0.8;        // of the lines along a bar are straight
-constexpr double kCrossed = 1.0 / 3;  // of the lines of a side cross a bar
-constexpr double kLength = 4;         // bead diameters
+constexpr int kMinLightWidth = 3;             // px; of the light between the border and a bar
+constexpr int kMinBarWidth = 4;               // px
+constexpr float kMinDarkness = 0.5F;          // of a bar
+constexpr double kMaxOffset = 0.4;            // px; of the outer side from its local median
+constexpr double kMinStraightShare = 0.8;     // of the lines along a bar
+constexpr double kMinCrossedShare = 1.0 / 3;  // of the lines of a side, which a bar crosses
+constexpr double kMinLength = 4;              // bead diameters
 
 /// The first dark run behind a light border.
 std::optional<BarLine> bar_line(const cv::Mat1f& d, Border border, int number) {
@@ -49,16 +49,16 @@ std::optional<BarLine> bar_line(const cv::Mat1f& d, Border border, int number) {
   const int n = line_length(border, d.size());
   int first = 0;
   const float* at = from;
-  for (; first < n && *at < kDark; ++first) at += step;
-  if (first < kLight) return std::nullopt;
+  for (; first < n && *at < kMinDarkness; ++first) at += step;
+  if (first < kMinLightWidth) return std::nullopt;
   int light = first;
-  for (; light < n && *at >= kDark; ++light) at += step;
-  if (light == n || light - first < kThinnest) return std::nullopt;
+  for (; light < n && *at >= kMinDarkness; ++light) at += step;
+  if (light == n || light - first < kMinBarWidth) return std::nullopt;
   const float before = from[(first - 1) * step], rise = from[first * step] - before;
   return BarLine{.number = number,
                  .first = first,
                  .light = light,
-                 .side = first - 1 + static_cast<double>((kDark - before) / std::max(rise, 1e-6F))};
+                 .side = first - 1 + static_cast<double>((kMinDarkness - before) / std::max(rise, 1e-6F))};
 }
 
 /// The lines at which the outer side is straight: it lies at the median of its neighbours within a radius.
@@ -71,7 +71,7 @@ std::vector<BarLine> straight_lines(const std::vector<BarLine>& found, int reach
     while (end < found.size() && found[end].number <= line.number + reach) ++end;
     near.clear();
     for (std::size_t j = begin; j < end; ++j) near.push_back(found[j].side);
-    if (std::abs(line.side - upper_median(near)) <= kStraight) straight.push_back(line);
+    if (std::abs(line.side - upper_median(near)) <= kMaxOffset) straight.push_back(line);
   }
   return straight;
 }
@@ -89,16 +89,16 @@ int width_of(const std::vector<BarLine>& lines) {
 }  // namespace
 
 std::vector<StraightBar> straight_bars(const cv::Mat1f& d, Border border, double diameter_px) {
-  constexpr double kSmallest = 8;
-  constexpr int kSampled = 8;  // most pictures have no bars, as a few lines show
-  constexpr double kSteepest = 0.1;
+  constexpr double kMinDiameter = 8;  // px
+  constexpr int kSampling = 8;        // every 8th line: most pictures have no bars, as a few lines show
+  constexpr double kMaxSlope = 0.1;   // px per line
   const int count = line_count(border, d.size());
-  if (diameter_px < kSmallest || line_length(border, d.size()) < 2 * kLight) return {};
-  const double shortest = std::max(kLength * diameter_px, kCrossed * count);
+  if (diameter_px < kMinDiameter || line_length(border, d.size()) < 2 * kMinLightWidth) return {};
+  const double shortest = std::max(kMinLength * diameter_px, kMinCrossedShare * count);
   int sampled = 0;
-  for (int number = kSampled / 2; number < count; number += kSampled)
+  for (int number = kSampling / 2; number < count; number += kSampling)
     sampled += bar_line(d, border, number) ? 1 : 0;
-  if (sampled * kSampled < kShare * shortest - kSampled) return {};
+  if (sampled * kSampling < kMinStraightShare * shortest - kSampling) return {};
   std::vector<BarLine> found;
   for (int number = 0; number < count; ++number)
     if (const auto line = bar_line(d, border, number)) found.push_back(*line);
@@ -110,10 +110,10 @@ std::vector<StraightBar> straight_bars(const cv::Mat1f& d, Border border, double
     for (next = first + 1; next < straight.size(); ++next) {
       const BarLine &before = straight[next - 1], &here = straight[next];
       const int gap = here.number - before.number;
-      if (gap > reach || std::abs(here.side - before.side) > 2 * kStraight + kSteepest * gap) break;
+      if (gap > reach || std::abs(here.side - before.side) > 2 * kMaxOffset + kMaxSlope * gap) break;
     }
     const int length = straight[next - 1].number - straight[first].number + 1;
-    if (length < shortest || static_cast<double>(next - first) < kShare * length) continue;
+    if (length < shortest || static_cast<double>(next - first) < kMinStraightShare * length) continue;
     StraightBar bar{.border = border,
                     .lines = {straight.begin() + static_cast<std::ptrdiff_t>(first),
                               straight.begin() + static_cast<std::ptrdiff_t>(next)}};
@@ -129,7 +129,8 @@ void mark(const StraightBar& bar, const cv::Mat1f& d, cv::Mat1b& marked) {
   const int n = line_length(bar.border, d.size()), count = line_count(bar.border, d.size());
   const auto set = [&](int number, int from, int to, bool only_dark) {
     for (int i = std::max(0, from); i < std::min(n, to); ++i)
-      if (const cv::Point at = pixel_from(bar.border, d.size(), number, i); !only_dark || d(at) >= kDark)
+      if (const cv::Point at = pixel_from(bar.border, d.size(), number, i);
+          !only_dark || d(at) >= kMinDarkness)
         marked(at) = 255;
   };
   // Lines at which a grain of dust or a bead hides the outer side lie between others.

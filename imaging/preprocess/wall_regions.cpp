@@ -41,8 +41,8 @@ void include_edge(cv::Mat1b& regions) {
 // beyond its border, so that a thin strip of plate at the bottom of a frame counts as thick. Empty if there
 // is no such region.
 cv::Mat1b regions_of(const cv::Mat1b& dark_pixels, double disc_radius_px) {
-  constexpr double kCoarse = 6;  // radius of the disc in the coarse picture, px
-  const int shrink = std::max(1, static_cast<int>(disc_radius_px / kCoarse));
+  constexpr double kCoarseRadius = 6;  // of the disc in the coarse picture, px
+  const int shrink = std::max(1, static_cast<int>(disc_radius_px / kCoarseRadius));
   const cv::Size size((dark_pixels.cols + shrink - 1) / shrink, (dark_pixels.rows + shrink - 1) / shrink);
   const double reach = disc_radius_px / shrink;
   // Coarse picture: a block is dark only if all of its pixels are, because the gaps between beads are narrow.
@@ -83,8 +83,8 @@ cv::Mat1b regions_of(const cv::Mat1b& dark_pixels, double disc_radius_px) {
   if (cv::countNonZero(dark) == static_cast<int>(dark.total())) return {};
   // Quick test: a square inside the disc, however distances are rounded, is much faster to search for, and
   // most frames do not even contain the square.
-  constexpr double kSquare = 0.65;
-  const int side = 2 * static_cast<int>(kSquare * reach) + 1;
+  constexpr double kHalfSide = 0.65;  // of the square, radii of the disc
+  const int side = 2 * static_cast<int>(kHalfSide * reach) + 1;
   cv::Mat1b squares;
   cv::erode(dark, squares, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
   if (cv::countNonZero(squares) == 0) return {};
@@ -119,30 +119,31 @@ std::vector<float> sampled_levels(const cv::Mat1f& darkness) {
 }
 
 /// The darkness above which thick regions are walls: 0.75, or 0.75 of the darkest level if nothing is as dark
-/// as that, as with red walls and beads in grey levels. Below kPalest the contrast is measured instead
-/// (PreprocessOptions::contrast). A share of the darkest level in every picture would take blurred crystals
-/// for walls.
+/// as that, as with red walls and beads in grey levels. Below kMinDarkestLevel the contrast is measured
+/// instead (PreprocessOptions::contrast). A share of the darkest level in every picture would take blurred
+/// crystals for walls.
 float least_wall_darkness(std::vector<float> levels) {
-  constexpr float kDark = 0.75F, kOfDarkest = 0.93F;  // a wall is as even as that
-  constexpr float kPalest = 0.5F;
-  constexpr double kDarkest = 0.02;  // share of the pixels
-  if (levels.empty()) return kDark;
+  constexpr float kWallDarkness = 0.75F;
+  constexpr float kEvenness = 0.93F;        // level of a wall, fraction of its darkest level
+  constexpr float kMinDarkestLevel = 0.5F;  // darkness
+  constexpr double kDarkestShare = 0.02;    // of the pixels
+  if (levels.empty()) return kWallDarkness;
   const auto at =
-      levels.end() - 1 - static_cast<std::ptrdiff_t>(kDarkest * static_cast<double>(levels.size()));
+      levels.end() - 1 - static_cast<std::ptrdiff_t>(kDarkestShare * static_cast<double>(levels.size()));
   std::nth_element(levels.begin(), at, levels.end());
-  return *at > kPalest && kOfDarkest * *at < kDark ? kDark * *at : kDark;
+  return *at > kMinDarkestLevel && kEvenness * *at < kWallDarkness ? kWallDarkness * *at : kWallDarkness;
 }
 
 /// Pixels darker than a limit. Where the noise makes single pixels of a dark region lighter than that, they
 /// count too: the mean of the nine pixels about such a pixel is above the limit, and the pixel is as dark as
 /// the noise allows. A gap between beads is lighter, or lightens the mean.
 cv::Mat1b pixels_darker_than(float limit, const cv::Mat1f& darkness, std::vector<float> levels) {
-  constexpr double kErrors = 6;
+  constexpr double kMaxDeviation = 6;  // of a dark pixel, standard deviations of the noise
   cv::Mat1b dark = darkness > limit;
   std::erase_if(levels, [&](float level) { return level <= limit; });
   if (levels.empty()) return dark;
   const auto least = static_cast<float>(static_cast<double>(upper_median(std::move(levels))) -
-                                        kErrors * std::sqrt(noise_of(darkness).dark));
+                                        kMaxDeviation * std::sqrt(noise_of(darkness).dark));
   if (least >= limit) return dark;
   cv::Mat1f mean;
   cv::boxFilter(darkness, mean, CV_32F, {3, 3}, cv::Point(-1, -1), true,
@@ -167,9 +168,10 @@ void blurred(const cv::Mat1f& picture, double by, cv::Mat1f& out) {
 /// \param radius_px of beads, whose gaps do not lower the level
 double divide_by_level(cv::Mat1f& picture, double radius_px) {
   constexpr int kPasses = 4;
-  constexpr float kDark = 0.4F;
-  constexpr double kNear = 0.85, kFar = 1.1;  // beyond these shares of the level are no walls and no beads
-  constexpr double kRidge = 1e-3;             // of the number of samples
+  constexpr float kMinDarkness = 0.4F;
+  // Of walls and beads, as fractions of the level.
+  constexpr double kMinRelativeLevel = 0.85, kMaxRelativeLevel = 1.1;
+  constexpr double kRidge = 1e-3;  // fraction of the number of samples
   constexpr double kSamples = 5000;
   const int stride =
       std::max(1, static_cast<int>(std::sqrt(static_cast<double>(picture.total()) / kSamples)));
@@ -179,17 +181,18 @@ double divide_by_level(cv::Mat1f& picture, double radius_px) {
   std::vector<std::pair<Surface, double>> samples;
   for (int y = stride / 2; y < picture.rows; y += stride)
     for (int x = stride / 2; x < picture.cols; x += stride)
-      if (picture(y, x) > kDark)
+      if (picture(y, x) > kMinDarkness)
         samples.emplace_back(surface_basis(x, y, picture.size()), static_cast<double>(highest(y, x)));
-  constexpr std::size_t kFewest = 60;
-  if (samples.size() < kFewest) return 0;
+  constexpr std::size_t kMinSamples = 60;
+  if (samples.size() < kMinSamples) return 0;
   Surface level = Surface::Zero();
   for (int pass = 0; pass < kPasses; ++pass) {
     Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
     Surface right = Surface::Zero();
     for (const auto& [basis, value] : samples) {
       const double expected = level.dot(basis);
-      if (pass > 0 && (value < kNear * expected || value > kFar * expected)) continue;
+      if (pass > 0 && (value < kMinRelativeLevel * expected || value > kMaxRelativeLevel * expected))
+        continue;
       normal += basis * basis.transpose();
       right += value * basis;
     }
@@ -212,14 +215,14 @@ double divide_by_level(cv::Mat1f& picture, double radius_px) {
 /// \param among the parts \param share of the darkest level
 cv::Mat1b regions_near_darkest(const cv::Mat1f& smooth, const cv::Mat1b& among, float share,
                                double disc_radius_px) {
-  constexpr double kNearlyAll = 0.9;
+  constexpr double kDarkestQuantile = 0.9;  // a few pixels may be darker
   std::vector<float> levels;
   for (int y = 0; y < smooth.rows; ++y)
     for (int x = 0; x < smooth.cols; ++x)
       if (among(y, x) != 0) levels.push_back(smooth(y, x));
   if (levels.empty()) return {};
   const auto at =
-      levels.begin() + static_cast<std::ptrdiff_t>(kNearlyAll * static_cast<double>(levels.size()));
+      levels.begin() + static_cast<std::ptrdiff_t>(kDarkestQuantile * static_cast<double>(levels.size()));
   std::nth_element(levels.begin(), at, levels.end());
   return regions_of(smooth > share * *at, disc_radius_px);
 }
@@ -239,13 +242,13 @@ void keep_at_border(cv::Mat1b& regions) {
 /// Darkness relative to the mean of the light where it is seen. The surface through the light of the
 /// background, which front light shows between the beads only, is not extrapolated to the walls.
 cv::Mat1f against_mean_light(const Prepared& image) {
-  constexpr float kClear = 0.15F;
+  constexpr float kMaxBackgroundDarkness = 0.15F;
   const cv::Size size = image.darkness.size();
   double sum = 0, n = 0;
   for (int y = 0; y < size.height; ++y) {
     const SurfaceRow light = surface_row(image.light, y, size);
     for (int x = 0; x < size.width; ++x)
-      if (image.darkness(y, x) < kClear) sum += static_cast<double>(light.at(x)), ++n;
+      if (image.darkness(y, x) < kMaxBackgroundDarkness) sum += static_cast<double>(light.at(x)), ++n;
   }
   cv::Mat1f even = image.darkness.clone();
   if (n == 0) return even;
@@ -261,18 +264,22 @@ cv::Mat1f against_mean_light(const Prepared& image) {
 /// The walls of a cell that is lit from the front: a lamp lights their middle more than their corners, and
 /// they are as noisy as the beads. Absent where light and noise are even enough for the usual search.
 std::optional<cv::Mat1b> unevenly_lit_regions(const Prepared& image, double radius_px, double in_radii) {
-  constexpr double kEven = 0.1, kQuiet = 0.03, kAfter = 0.01;  // shares of the level
-  constexpr double kLeast = 1, kMost = 1.5;                    // px, smoothing
-  constexpr float kDark = 0.75F, kOfDarkest = 0.93F;
+  // Of the usual search: range of the level and noise, as fractions of the level.
+  constexpr double kMaxUnevenness = 0.1, kMaxNoise = 0.03;
+  constexpr double kTargetNoise = 0.01;  // after smoothing, fraction of the level
+  constexpr double kMinSmoothing_px = 1, kMaxSmoothing_px = 1.5;
+  constexpr float kWallDarkness = 0.75F;
+  constexpr float kEvenness = 0.93F;  // level of a wall, fraction of its darkest level
   const cv::Mat1f darkness = against_mean_light(image), in_contrast = darkness / contrast_of(darkness);
   const double noise = std::sqrt(noise_of(in_contrast).dark);
   // Smoothing by s reduces white noise by 2 sqrt(pi) s.
-  const double by = std::clamp(noise / (2 * std::sqrt(std::numbers::pi) * kAfter), kLeast, kMost);
+  const double by = std::clamp(noise / (2 * std::sqrt(std::numbers::pi) * kTargetNoise), kMinSmoothing_px,
+                               kMaxSmoothing_px);
   cv::Mat1f smooth;
   blurred(in_contrast, by, smooth);
   const double uneven = divide_by_level(smooth, radius_px);
-  if (uneven < kEven && noise < kQuiet) return std::nullopt;
-  cv::Mat1b regions = regions_near_darkest(smooth, smooth > kDark, kOfDarkest, in_radii * radius_px);
+  if (uneven < kMaxUnevenness && noise < kMaxNoise) return std::nullopt;
+  cv::Mat1b regions = regions_near_darkest(smooth, smooth > kWallDarkness, kEvenness, in_radii * radius_px);
   // Front light reaches a wall up to the border of the picture; dark regions inside are dense parts of the
   // bed.
   if (!regions.empty()) keep_at_border(regions);
@@ -286,9 +293,9 @@ std::optional<cv::Mat1b> unevenly_lit_regions(const Prepared& image, double radi
 // picture then replaces the first.
 cv::Mat1b wall_regions(const Prepared& image, bool bright, double radius_px, double in_radii) {
   const cv::Mat1f& darkness = image.darkness;
-  constexpr float kOfDarkest = 0.93F;
-  constexpr double kSharp = 1.3, kSmooth = 1;  // px
-  constexpr double kOutOfFocus = 0.22;         // of the radius
+  constexpr float kEvenness = 0.93F;  // level of a wall, fraction of its darkest level
+  constexpr double kMaxSharpBlur_px = 1.3, kMaxSharpBlurOfRadius = 0.22;  // the larger counts
+  constexpr double kSmoothing_px = 1;
 
   // Distances from an edge to either side, in units of the blur.
   constexpr double kTail = 2, kFromDark = 0.7, kFromDarkest = 1.55;
@@ -297,14 +304,14 @@ cv::Mat1b wall_regions(const Prepared& image, bool bright, double radius_px, dou
   cv::Mat1b bars = straight_bars(darkness, 2 * radius_px, 2 * in_radii * radius_px);
   if (regions.empty() && bars.empty()) return {};
   const double blur = blur_of(darkness);
-  constexpr double kBent = 3;  // blurs; the rims of smaller beads do not bend visibly
-  if (radius_px < kBent * blur) bars = {};
+  constexpr double kMinRadius = 3;  // blurs; the rims of smaller beads do not bend visibly
+  if (radius_px < kMinRadius * blur) bars = {};
   if (regions.empty() && bars.empty()) return {};
   double beside = (kTail + (uneven ? kFromDarkest : kFromDark)) * blur;
-  if (!uneven && !regions.empty() && blur > std::max(kSharp, kOutOfFocus * radius_px)) {
+  if (!uneven && !regions.empty() && blur > std::max(kMaxSharpBlur_px, kMaxSharpBlurOfRadius * radius_px)) {
     cv::Mat1f smooth;
-    blurred(darkness, kSmooth, smooth);
-    regions = regions_near_darkest(smooth, regions, kOfDarkest, in_radii * radius_px);
+    blurred(darkness, kSmoothing_px, smooth);
+    regions = regions_near_darkest(smooth, regions, kEvenness, in_radii * radius_px);
     beside = (kTail + kFromDarkest) * blur;
   }
   if (!bars.empty()) {

@@ -25,27 +25,27 @@ void over_disc(cv::Size size, const Detection& b, double reach, Use&& use) {
 }
 
 double interior(const Prepared& image, const Detection& b) {
-  constexpr std::size_t kFew = 64;
-  std::array<float, kFew> few{};
+  constexpr std::size_t kFewPixels = 64;  // kept in an array
+  std::array<float, kFewPixels> few{};
   std::vector<float> many;
   std::size_t n = 0;
   // For larger discs every other pixel, in a chessboard pattern, suffices for the median.
-  constexpr double kLarge = 3;
+  constexpr double kMaxDenseReach = 3;  // px
   const double reach = std::max(0.5 * b.radius, 1.0);
-  const int stride = reach > kLarge ? 2 : 1;
+  const int stride = reach > kMaxDenseReach ? 2 : 1;
   over_disc(image.darkness.size(), b, reach, [&](int y, int first, int last) {
     const float* row = image.darkness[y];
     for (int x = first + ((first + y) & (stride - 1)); x <= last; x += stride, ++n) {
-      if (n < kFew) {
+      if (n < kFewPixels) {
         few[n] = row[x];
         continue;
       }
-      if (n == kFew) many.assign(few.begin(), few.end());
+      if (n == kFewPixels) many.assign(few.begin(), few.end());
       many.push_back(row[x]);
     }
   });
   if (n == 0) return b.darkness;  // centre outside the frame: use the fit of the rim
-  return static_cast<double>(n > kFew ? upper_median(std::move(many)) : upper_median_of_few(few, n));
+  return static_cast<double>(n > kFewPixels ? upper_median(std::move(many)) : upper_median_of_few(few, n));
 }
 
 /// Sum of v B. B is a quadratic surface, so its Taylor coefficients at the centre and the moments of the disc

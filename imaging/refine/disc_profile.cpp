@@ -54,7 +54,7 @@ double DiscProfile::largest() const {
   return static_cast<double>(most);
 }
 
-double DiscProfile::unlike_plain() const {
+double DiscProfile::difference_from_plain() const {
   constexpr double kSharpest = 0.4, kSoftest = 3.2, kRatio = 1.2;  // blur, px
   const double out = rim();
   double all = 0;

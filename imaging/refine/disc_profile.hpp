@@ -8,10 +8,10 @@ namespace twincell::imaging {
 
 /// The radial profile shared by discs of the same appearance.
 struct DiscProfile {
-  static constexpr double kPerPixel = 2;
-  double radius_px = 0;       ///< R for which the profile was learnt; 0: no profile
-  double ground = 0;          ///< g, darkness between the discs
-  std::vector<float> levels;  ///< f at r = k/kPerPixel; 0 beyond the last
+  static constexpr double kPerPixel = 2;  ///< levels per px
+  double radius_px = 0;                   ///< R for which the profile was learnt; 0: no profile
+  double ground = 0;                      ///< g, darkness between the discs
+  std::vector<float> levels;              ///< f at r = k/kPerPixel; 0 beyond the last
   /// f at distance r from the centre of a disc of radius R.
   [[nodiscard]] double at(double r) const;
   /// Radius of the outer rim, px: where f falls most steeply outside its outermost extremum that exceeds a
@@ -21,13 +21,16 @@ struct DiscProfile {
   [[nodiscard]] double largest() const;
   /// Fraction of the sum of f^2 over the disc's area that a plain disc with this rim, at its best-fitting
   /// blur, leaves unexplained. Below 0.01 for opaque discs, including those with a small bright spot.
-  [[nodiscard]] double unlike_plain() const;
+  [[nodiscard]] double difference_from_plain() const;
 };
 
-/// f and its slope at distance r, for a disc with the radius of the profile.
+/// A level of the profile.
 struct ProfileLevel {
-  double value, slope;
+  double value;  ///< f, darkness
+  double slope;  ///< df/dr, darkness per px
 };
+/// f and its slope at distance r >= 0, px, from the centre of a disc of radius radius_px, by linear
+/// interpolation; {0, 0} beyond the last level. Pure.
 ProfileLevel level_at(const DiscProfile& f, double r);
 
 }  // namespace twincell::imaging

@@ -12,9 +12,9 @@ namespace twincell::imaging {
 
 namespace {
 
-// Half width of the ring in each round: at least kLeastRing px, and for large discs the given fractions of
+// Half width of the ring in each round: at least kMinRing px, and for large discs the given fractions of
 // their radius, because the proposal of a large disc is coarse.
-constexpr double kLeastRing = 2.5;
+constexpr double kMinRing = 2.5;
 constexpr std::array<double, 5> kRings = {0.08, 0.06, 0.05, 0.05, 0.05};
 // From this radius on (px) the edge is long enough to require that kMinSeen of it is visible.
 constexpr double kLarge = 25;
@@ -101,9 +101,9 @@ Refined refine_by_edges(const Prepared& image, const std::vector<Proposal>& prop
     // Fit: rounds with narrower rings.
     EdgeSums sums;
     Eigen::Vector3d step = Eigen::Vector3d::Zero();
-    double ring = kLeastRing;
+    double ring = kMinRing;
     for (const double wide : kRings) {
-      ring = std::max(kLeastRing, wide * radius);
+      ring = std::max(kMinRing, wide * radius);
       sums = edge_of(image.darkness, b, ring);
       // Prior: a twentieth of a whole edge at the proposed circle. A short arc alone does not determine the
       // circle.

@@ -106,9 +106,10 @@ std::vector<Disc> FrameModel::discs() const {
 }
 
 double FrameModel::ring() const {
-  constexpr double kFar = 3, kLeast = 2.5, kMost = 6;
+  constexpr double kReach = 3;                    // widths of the blur
+  constexpr double kMinRing = 2.5, kMaxRing = 6;  // px; the radius of the smallest disc if that is larger
   if (options.ring_px > 0) return options.ring_px;
-  return std::clamp(blur.reach(kFar), kLeast, std::max(kMost, priors.smallest()));
+  return std::clamp(blur.reach(kReach), kMinRing, std::max(kMaxRing, priors.smallest()));
 }
 
 double FrameModel::full_ring(const Detection& b) const {

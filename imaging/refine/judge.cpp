@@ -58,8 +58,8 @@ void forbid_overlaps(std::vector<Detection>& beads, double max_overlap) {
 /// are lighter. The gap is accepted if this is below kFalseAlarm/(k (k + 1)), of which the sum over all k is
 /// kFalseAlarm. \param sorted ascending; \param limit only values below it may be split off
 std::size_t separate_population(const std::vector<double>& sorted, double limit) {
-  constexpr double kFalseAlarm = 1e-3;   // per frame
-  constexpr double kLeastScale = 0.005;  // as real pictures have
+  constexpr double kFalseAlarm = 1e-3;  // per frame
+  constexpr double kMinScale = 0.005;   // as real pictures have
   const std::size_t middle = sorted.size() / 2;
   std::size_t split = 0;
   double sum = 0;
@@ -67,7 +67,7 @@ std::size_t separate_population(const std::vector<double>& sorted, double limit)
     const auto m = static_cast<double>(middle - k), below = static_cast<double>(k);
     const double gap = below * (sorted[k] - sorted[k - 1]);
     if (sorted[k - 1] < limit && split == 0) {
-      const double x = gap / std::max(sum, kLeastScale * std::max(1.0, m));
+      const double x = gap / std::max(sum, kMinScale * std::max(1.0, m));
       if (std::pow(1 + x, -m) * below * (below + 1) < kFalseAlarm) split = k;
     }
     sum += gap;
@@ -100,8 +100,8 @@ void flag_tracers(std::vector<Detection>& beads, double below) {
   // The limit lies below the other beads, and in or above the gap.
   const std::size_t split = separate_population(sorted, limit);
   if (split > 0) limit = std::min(limit, sorted[split]);
-  constexpr double kLeastScatter = 0.005;
-  const double scatter = std::max(kLeastScatter, robust_spread(std::move(interior), typical));
+  constexpr double kMinScatter = 0.005;
+  const double scatter = std::max(kMinScatter, robust_spread(std::move(interior), typical));
   for (Detection& b : beads) {
     b.tracer = split > 0 && b.interior < limit;
     b.tracer_margin = std::abs(b.interior - limit) / scatter;

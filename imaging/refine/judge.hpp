@@ -17,9 +17,9 @@ struct JudgeOptions {
   bool pale = false;                   ///< a pale disc (RefineOptions) is as pale inside as at its rim
   double max_overlap = 0.25;  ///< largest overlap of two discs, in radii; beyond it the worse is dropped
   double tracer_below = 0.8;  ///< a tracer's interior is below this fraction of the median
-  /// Discs that are no beads are dropped (unlike_discs.hpp). For one size that the picture gave: beads of a
+  /// Discs that are not beads are dropped (outlier_discs.hpp). For one size that the picture gave: beads of a
   /// stated size are beads, and beads of many sizes are too unlike each other.
-  bool drop_unlike = false;
+  bool drop_outliers = false;
 };
 
 /// The candidates, sorted into beads and rejected discs.

@@ -36,7 +36,7 @@ void over_gaps(const FrameModel& frame, double samples, Use&& use) {
 /// Quadratic surface through the residual in the gaps; absent if too few pixels are in gaps.
 std::optional<Surface> quadratic_left(const FrameModel& frame) {
   constexpr double kSamples = 10000;
-  constexpr int kEnough = 200;
+  constexpr int kMinPixels = 200;
   Eigen::Matrix<double, 6, 6> a = Eigen::Matrix<double, 6, 6>::Zero();
   Surface right = Surface::Zero();
   int n = 0;
@@ -48,7 +48,7 @@ std::optional<Surface> quadratic_left(const FrameModel& frame) {
     weights += weight;
     ++n;
   });
-  if (n < kEnough) return std::nullopt;
+  if (n < kMinPixels) return std::nullopt;
   a.diagonal().tail<5>().array() += 1e-3 * weights;
   return a.ldlt().solve(right);
 }
@@ -105,13 +105,15 @@ Tiles tiles_beside(const FrameModel& frame, const Surface& q, int side, double s
 
 /// Ripple of the light after a quadratic surface, pixel by pixel; empty if no ripple is detected.
 cv::Mat1f ripple_beside(const FrameModel& frame, const Surface& q) {
-  constexpr double kSeen = 10000, kFound = 400000;  // samples to detect a ripple, and to measure it
-  constexpr int kMost = 32;                         // tiles
+  constexpr double kSamplesToDetect = 10000, kSamplesToMeasure = 400000;
+  constexpr int kMaxTiles = 32;  // along the longer side
   const cv::Size size = frame.size;
-  const int side = std::max(cvCeil(6 * frame.priors.largest()), std::max(size.width, size.height) / kMost);
-  if (const Tiles seen = tiles_beside(frame, q, side, kSeen); !has_ripple(seen.mean, seen.variance))
+  const int side =
+      std::max(cvCeil(6 * frame.priors.largest()), std::max(size.width, size.height) / kMaxTiles);
+  if (const Tiles seen = tiles_beside(frame, q, side, kSamplesToDetect);
+      !has_ripple(seen.mean, seen.variance))
     return {};
-  const Tiles found = tiles_beside(frame, q, side, kFound);
+  const Tiles found = tiles_beside(frame, q, side, kSamplesToMeasure);
   const cv::Mat1f map = smooth_ripple(found.mean, found.variance);
   cv::Mat1f wide;
   cv::resize(map, wide, map.size() * side, 0, 0, cv::INTER_CUBIC);

@@ -78,10 +78,11 @@ struct Residual {
   double left = 0, squares = 0, pixels = 0;
   /// Whether it is about the same everywhere, as inside a pale disc; in dust and in shadows it is not.
   [[nodiscard]] bool is_even() const {
-    constexpr double kEven = 0.3, kFewest = 5;
-    if (pixels < kFewest || left <= 0) return false;
+    constexpr double kMaxScatter = 0.3;  // fraction of the mean
+    constexpr double kMinPixels = 5;
+    if (pixels < kMinPixels || left <= 0) return false;
     const double mean = left / pixels;
-    return squares / pixels - mean * mean < kEven * kEven * mean * mean;
+    return squares / pixels - mean * mean < kMaxScatter * kMaxScatter * mean * mean;
   }
 };
 
@@ -102,10 +103,11 @@ Residual residual_within(const FrameModel& frame, const Proposal& p, double radi
 /// Whether a pale residual may be a disc: it is even inside, and neither cut by the frame nor next to a wall,
 /// whose light leaves such residuals.
 bool may_be_pale_disc(const FrameModel& frame, const Proposal& p) {
-  constexpr double kEvenInside = 0.6, kWhole = 0.7;  // of R; of the disc's area
+  constexpr double kEvenRadius = 0.6;   // fraction of R
+  constexpr double kMinFreeArea = 0.7;  // fraction of the disc's area
   const double r = p.radius;
-  return residual_within(frame, p, kEvenInside * r).is_even() &&
-         residual_within(frame, p, r).pixels > kWhole * std::numbers::pi * r * r;
+  return residual_within(frame, p, kEvenRadius * r).is_even() &&
+         residual_within(frame, p, r).pixels > kMinFreeArea * std::numbers::pi * r * r;
 }
 
 /// The largest size for which the residual picture is dark at that position; otherwise the smallest size.

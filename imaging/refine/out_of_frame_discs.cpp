@@ -9,10 +9,10 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr int kRows = 4;            // rows from the border that carry nearly all the information
-constexpr int kDepthsPerPixel = 2;  // trial depths of centres per pixel
-constexpr double kWitness = 0.1;    // mean residual of five border pixels that starts a closer search
-constexpr double kClear = 6;        // smallest darkness in standard deviations
+constexpr int kRows = 4;                // rows from the border that carry nearly all the information
+constexpr int kDepthsPerPixel = 2;      // trial depths of centres per pixel
+constexpr double kWitness = 0.1;        // mean residual of five border pixels that starts a closer search
+constexpr double kMinSignificance = 6;  // of the darkness, standard deviations
 
 /// Residuals and weights along a border of the frame, by row from the border. Beyond both ends there are
 /// `half` places without weight.
@@ -121,7 +121,7 @@ std::vector<Proposal> out_of_frame_discs(const RingArgs& args, double radius_px,
         for (std::size_t t = 0; t < places; ++t) {
           const double by = dark.by[t], of = dark.of[t];
           const double clear = of > 0 ? by / std::sqrt(of) : 0;
-          if (by < least_darkness * of || clear <= std::max(kClear, best[t].score)) continue;
+          if (by < least_darkness * of || clear <= std::max(kMinSignificance, best[t].score)) continue;
           const cv::Point2d centre =
               side.at(begin + static_cast<int>(t), -static_cast<double>(d + 1) / kDepthsPerPixel);
           best[t] = {centre.x, centre.y, clear};

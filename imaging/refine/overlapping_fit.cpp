@@ -17,10 +17,10 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr double kFar = 3.5;            // blurs beyond R at which a disc ends
-constexpr double kLeastGain = 0.1;      // of what a whole disc explains
-constexpr double kMisplaced = 0.3;      // the same, lost by a disc that is not in its place yet
-constexpr double kLeastSeen = 1.0 / 6;  // of the rim
+constexpr double kEdgeReach = 3.5;    // blurs beyond R at which a disc ends
+constexpr double kMinGain = 0.1;      // fraction of the squared darkness of a whole disc
+constexpr double kMisplaced = 0.3;    // the same, lost by a disc that is not in its place yet
+constexpr double kMinSeen = 1.0 / 6;  // of the rim
 
 double square(double a) {
   return a * a;
@@ -71,7 +71,7 @@ class Layers {
       open.pop();
       Disc& disc = wanted[k];
       const double gain = gain_of(disc);
-      const double least = kLeastGain * whole(disc);
+      const double least = kMinGain * whole(disc);
       // Before it is placed, a disc may seem to explain nothing.
       if (gain < (settled[k] ? least : -kMisplaced * whole(disc))) continue;
       if (!open.empty() && gain < open.top().first) {
@@ -120,10 +120,10 @@ class Layers {
     return all;
   }
 
-  /// One Gauss-Newton step of each disc in turn, and of the blur. \param alike radius and darkness are those
+  /// One Gauss-Newton step of each disc in turn, and of the blur. \param common radius and darkness are those
   /// of all discs. Two discs whose centres are near would otherwise become a single large one. \returns the
   /// largest displacement, px
-  double sweep(bool alike) {
+  double sweep(bool common) {
     const std::vector<std::vector<std::size_t>> near = neighbours();
     double largest = 0, blur_right = 0, blur_normal = 0;
     sums_.assign(discs_.size(), {});
@@ -137,7 +137,7 @@ class Layers {
       a(kA, kA) += 1 / square(darkness_spread_);
       g[kA] -= (discs_[k].darkness - darkness_) / square(darkness_spread_);
       constexpr double kFixed = 1e15;
-      if (alike) a(kR, kR) += kFixed, a(kA, kA) += kFixed;
+      if (common) a(kR, kR) += kFixed, a(kA, kA) += kFixed;
       a.diagonal().array() += 1e-9 * (1 + a.diagonal().array());
       const Step step = a.ldlt().solve(g);
       const double most = std::max(0.5, 0.15 * radius_);
@@ -157,17 +157,18 @@ class Layers {
 
   /// Narrows the priors to the scatter of the discs of which most is seen.
   void learn() {
-    constexpr double kMostly = 0.8;
-    constexpr std::size_t kFewest = 6;
-    constexpr double kLeastRadius = 0.003, kLeastDarkness = 0.01;
+    constexpr double kMinSeenToLearn = 0.8;  // of the rim
+    constexpr std::size_t kMinDiscs = 6;
+    constexpr double kMinRadiusSpread = 0.003, kMinDarknessSpread = 0.01;  // fraction of R; darkness
     std::vector<double> radii, levels;
     for (std::size_t k = 0; k < discs_.size(); ++k)
-      if (sums_[k].seen > kMostly) radii.push_back(discs_[k].radius), levels.push_back(discs_[k].darkness);
-    if (radii.size() < kFewest) return;
+      if (sums_[k].seen > kMinSeenToLearn)
+        radii.push_back(discs_[k].radius), levels.push_back(discs_[k].darkness);
+    if (radii.size() < kMinDiscs) return;
     found_radius_ = upper_median(radii);
-    spread_ = std::max(kLeastRadius, robust_spread(radii, found_radius_) / radius_);
+    spread_ = std::max(kMinRadiusSpread, robust_spread(radii, found_radius_) / radius_);
     darkness_ = upper_median(levels);
-    darkness_spread_ = std::max(kLeastDarkness, robust_spread(levels, darkness_));
+    darkness_spread_ = std::max(kMinDarknessSpread, robust_spread(levels, darkness_));
   }
 
   /// Removes the discs that explain too little, the least first. \returns how many
@@ -177,7 +178,7 @@ class Layers {
       const std::vector<std::vector<std::size_t>> near = neighbours();
       std::vector<std::pair<double, std::size_t>> weak;
       for (std::size_t k = 0; k < discs_.size(); ++k)
-        if (const double share = own_gain(k, near[k]) / whole(discs_[k]); share < kLeastGain)
+        if (const double share = own_gain(k, near[k]) / whole(discs_[k]); share < kMinGain)
           weak.emplace_back(share, k);
       if (weak.empty()) return pruned;
       std::sort(weak.begin(), weak.end());
@@ -199,7 +200,8 @@ class Layers {
   /// Replaces discs that are clearly larger than the others by two, where those describe the picture better.
   /// \returns whether any was
   bool split() {
-    constexpr double kLarge = 1.06, kBetter = 0.01;
+    constexpr double kMinRadiusRatio = 1.06;  // of a disc to be split to the mean radius
+    constexpr double kMinImprovement = 0.01;  // fraction of the squared darkness of a whole disc
     constexpr int kDirections = 16;
     const double r = mean_radius();
     const std::vector<std::vector<std::size_t>> near = neighbours();
@@ -207,12 +209,12 @@ class Layers {
     bool any = false;
     for (std::size_t k = 0; k < n; ++k) {
       const Disc large = discs_[k];
-      if (large.radius < kLarge * r) continue;
+      if (large.radius < kMinRadiusRatio * r) continue;
       // Two discs at this distance cover the area of the large one.
       const double apart = std::numbers::pi * (square(large.radius) - square(r)) / (2 * r);
       const auto left = [&](const std::vector<Disc>& own) {
         double squares = 0;
-        over(large, large.radius + apart + kFar * blur_, [&](int x, int y, double) {
+        over(large, large.radius + apart + kEdgeReach * blur_, [&](int x, int y, double) {
           double clear = clear_of(near[k], x, y);
           for (const Disc& o : own)
             clear *= 1 - unit_ * o.darkness * edge_at(std::hypot(x - o.x, y - o.y), o.radius, blur_).value;
@@ -220,7 +222,7 @@ class Layers {
         });
         return squares;
       };
-      double least = left({large}) - kBetter * whole(large);
+      double least = left({large}) - kMinImprovement * whole(large);
       std::vector<Disc> best;
       for (int direction = 0; direction < kDirections; ++direction) {
         const double turn = std::numbers::pi * direction / kDirections;
@@ -270,7 +272,7 @@ class Layers {
   };
 
   [[nodiscard]] double mean_radius() const { return found_radius_ > 0 ? found_radius_ : radius_; }
-  /// What a disc alone explains.
+  /// Squared darkness, summed over its area, of a disc that no other overlaps, px^2.
   [[nodiscard]] double whole(const Disc& disc) const {
     return std::numbers::pi * square(disc.radius * darkness_);
   }
@@ -289,7 +291,7 @@ class Layers {
   }
 
   void darken(const Disc& disc) {
-    over(disc, disc.radius + kFar * blur_, [&](int x, int y, double r) {
+    over(disc, disc.radius + kEdgeReach * blur_, [&](int x, int y, double r) {
       clear_(y, x) *= static_cast<float>(1 - unit_ * disc.darkness * edge_at(r, disc.radius, blur_).value);
     });
   }
@@ -301,7 +303,7 @@ class Layers {
   /// By how much a further disc lessens the squares of the residuals.
   [[nodiscard]] double gain_of(const Disc& disc) const {
     double gain = 0;
-    over(disc, disc.radius + kFar * blur_, [&](int x, int y, double r) {
+    over(disc, disc.radius + kEdgeReach * blur_, [&](int x, int y, double r) {
       const auto clear = static_cast<double>(clear_(y, x)), d = static_cast<double>(d_(y, x));
       const double shaded = clear * (1 - unit_ * disc.darkness * edge_at(r, disc.radius, blur_).value);
       gain += square(d - (1 - clear) / unit_) - square(d - (1 - shaded) / unit_);
@@ -312,7 +314,7 @@ class Layers {
   [[nodiscard]] double own_gain(std::size_t k, const std::vector<std::size_t>& near) const {
     const Disc& disc = discs_[k];
     double gain = 0;
-    over(disc, disc.radius + kFar * blur_, [&](int x, int y, double r) {
+    over(disc, disc.radius + kEdgeReach * blur_, [&](int x, int y, double r) {
       const double clear = clear_of(near, x, y), d = static_cast<double>(d_(y, x));
       const double shaded = clear * (1 - unit_ * disc.darkness * edge_at(r, disc.radius, blur_).value);
       gain += square(d - (1 - clear) / unit_) - square(d - (1 - shaded) / unit_);
@@ -325,7 +327,7 @@ class Layers {
     double clear = 1;
     for (const std::size_t j : near) {
       const Disc& o = discs_[j];
-      const double reach = o.radius + kFar * blur_, r2 = square(x - o.x) + square(y - o.y);
+      const double reach = o.radius + kEdgeReach * blur_, r2 = square(x - o.x) + square(y - o.y);
       if (r2 < reach * reach) clear *= 1 - unit_ * o.darkness * edge_at(std::sqrt(r2), o.radius, blur_).value;
     }
     return clear;
@@ -333,7 +335,7 @@ class Layers {
 
   [[nodiscard]] std::vector<std::vector<std::size_t>> neighbours() const {
     std::vector<std::vector<std::size_t>> near(discs_.size());
-    for (const auto& [i, j] : near_pairs(discs_, 2 * (kFar * blur_ + 1))) {
+    for (const auto& [i, j] : near_pairs(discs_, 2 * (kEdgeReach * blur_ + 1))) {
       near[static_cast<std::size_t>(i)].push_back(static_cast<std::size_t>(j));
       near[static_cast<std::size_t>(j)].push_back(static_cast<std::size_t>(i));
     }
@@ -413,12 +415,13 @@ class Layers {
 
 /// Darkness of a disc: that of most proposals' insides, which lie in a disc or in two.
 double darkness_of(const Prepared& image, const std::vector<Proposal>& proposals, double radius_px) {
-  constexpr double kLeast = 0.1;
+  constexpr double kMinDarkness = 0.1;
   std::vector<double> inside;
   for (const Proposal& p : proposals) {
     Detection b;
     b.x = p.x, b.y = p.y, b.radius = p.radius > 0 ? p.radius : radius_px;
-    if (const double v = rough_interior(image, b); v >= kLeast && !in_wall(image, b)) inside.push_back(v);
+    if (const double v = rough_interior(image, b); v >= kMinDarkness && !in_wall(image, b))
+      inside.push_back(v);
   }
   if (inside.empty()) return 0;
   // The lower quarter: a disc that does not overlap.
@@ -459,7 +462,7 @@ Refined refine_overlapping(const Prepared& image, const std::vector<Proposal>& p
   }
   for (Detection& b : layers.detections()) {
     measure_disc(image, b);
-    if (b.ring_share < kLeastSeen) {
+    if (b.ring_share < kMinSeen) {
       b.verdict = Verdict::unseen;
       result.dropped.push_back(b);
     } else {

@@ -13,9 +13,9 @@
 /// 2. Fit. Centre, radius and darkness of each disc by Gauss-Newton steps, with the other discs fixed, and
 ///    the blur of all discs; the radii and the darkness have their scatter from disc to disc as priors. A
 ///    pixel counts by what the other discs transmit there.
-/// 3. What no longer explains a tenth of a disc is dropped. Where the picture is darker than the discs,
-///    further discs are selected, and the fit is repeated. A disc that is larger than the others is replaced
-///    by two, if these describe the picture better.
+/// 3. Discs that explain less than a tenth of a whole disc are dropped. Where the picture is darker than the
+///    discs, further discs are selected, and the fit is repeated. A disc that is larger than the others is
+///    replaced by two, if these describe the picture better.
 ///
 /// When not to use: for discs of one layer picture_fit.hpp is faster and as accurate, and finds discs of
 /// which less is seen.
@@ -35,6 +35,7 @@ inline constexpr Refiner kOverlappingRefiner{
     .word = "overlapping",
     .help = "fits plain discs that may overlap in projection, as in two layers",
     .model = DiscModel::plain,
-    .fit = refine_overlapping};
+    .fit = refine_overlapping,
+    .layers = true};
 
 }  // namespace twincell::imaging

@@ -14,11 +14,11 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr double kOutside = 2.5;               // px beyond the rim that belong to a disc
-constexpr float kRim = 2;                      // px inside the rim that belong to it
-constexpr double kPerPixel = 2;                // levels of the profile
-constexpr double kDiscCost = 2.5;              // ln N each: half of x, y, R, a, o
-constexpr double kStep = 0.5, kLeastStep = 2;  // of R; px
+constexpr double kOutside = 2.5;             // px beyond the rim that belong to a disc
+constexpr float kRim = 2;                    // px inside the rim that belong to it
+constexpr double kPerPixel = 2;              // levels of the profile
+constexpr double kDiscCost = 2.5;            // ln N each: half of x, y, R, a, o
+constexpr double kStep = 0.5, kMinStep = 2;  // of R; px
 constexpr int kDirections = 8;
 constexpr int kRounds = 2;  // of learning the profile, then the level of each disc
 
@@ -58,7 +58,7 @@ class Explanation {
       s.level.assign(s.count, 0);
       s.scale.assign(s.count, noise_);
       s.used.assign(s.count, true);
-      const double far = std::max(kLeastStep, kStep * (neighbour_radius > 0 ? neighbour_radius : r));
+      const double far = std::max(kMinStep, kStep * (neighbour_radius > 0 ? neighbour_radius : r));
       for (int k = 0; k < kDirections; ++k) {
         const double turn = std::numbers::pi * k / kDirections;
         s.steps.emplace_back(cvRound(far * std::cos(turn)), cvRound(far * std::sin(turn)));
@@ -214,7 +214,7 @@ class Explanation {
     struct Sums {
       double n = 0, m = 0, v = 0, mm = 0, mv = 0;
     };
-    constexpr double kLeast = 0.5, kMost = 1.5;
+    constexpr double kMinAmplitude = 0.5, kMaxAmplitude = 1.5;  // in units of the common one
     const std::vector<double> rendered = amplitude_;
     for (int pass = 0; pass < 2; ++pass) {
       std::vector<Sums> sums(discs_.size());
@@ -237,7 +237,8 @@ class Explanation {
         const Sums& s = sums[b];
         if (s.n <= 0) continue;
         const double spread = s.mm - s.m * s.m / s.n;
-        amplitude_[b] = spread > 0 ? std::clamp((s.mv - s.m * s.v / s.n) / spread, kLeast, kMost) : 1.0;
+        amplitude_[b] =
+            spread > 0 ? std::clamp((s.mv - s.m * s.v / s.n) / spread, kMinAmplitude, kMaxAmplitude) : 1.0;
         offset_[b] = (s.v - amplitude_[b] * s.m) / s.n;
       }
     }
@@ -332,7 +333,7 @@ class Explanation {
   }
 
   std::vector<RimShift> shift_rims() {
-    constexpr double kWidth = 0.35, kLeastWidth = 2;  // of R; px
+    constexpr double kWidth = 0.35, kMinWidth = 2;  // of R; px
     constexpr double kNoise = 2, kModel = 0.02;  // largest residuals by chance: noise; range of the profile
     constexpr auto kSectors = static_cast<double>(RimShift::kSectors);
     std::vector<std::vector<double>> slope;
@@ -345,7 +346,7 @@ class Explanation {
         const auto b = static_cast<std::size_t>(owner_(y, x));
         const Detection& d = discs_[b];
         const auto out = static_cast<double>(out_(y, x));
-        if (std::abs(out) > std::max(kLeastWidth, kWidth * d.radius)) continue;
+        if (std::abs(out) > std::max(kMinWidth, kWidth * d.radius)) continue;
         const Place p = place(sizes_[size_of_[b]], out);
         const std::vector<double>& f = slope[size_of_[b]];
         const double change = -amplitude_[b] * ((1 - p.part) * f[p.k] + p.part * f[p.k + 1]),
@@ -375,7 +376,7 @@ class Explanation {
         --pixels[b];
       }
       rim.radius /= weights[b];
-      // More is no noise, but another shape.
+      // A larger residual is another shape, not noise.
       const double by_chance = std::hypot(kNoise * noise_, kModel * range);
       rim.variance = std::min(std::max(0.0, squares[b]) / std::max(1.0, pixels[b]), by_chance * by_chance);
     }
@@ -412,12 +413,13 @@ double pixel_gain(double e1, double s1, double e0, double s0) {
 }
 
 double noise_level(const cv::Mat1f& grey) {
-  constexpr double kSamples = 40000, kShare = 0.2;
-  constexpr double kQuantile = 0.2533;  // of |z|: a fifth of a normal distribution lies within
-  constexpr double kLeast = 1e-3;
+  constexpr double kSamples = 40000;      // pixels
+  constexpr double kFlattestShare = 0.2;  // of the pixels: those with the smallest second differences
+  constexpr double kQuantile = 0.2533;    // of |z|: a fifth of a normal distribution lies within
+  constexpr double kMinNoise = 1e-3;      // fraction of the range of the levels
   double low = 0, high = 0;
   cv::minMaxLoc(grey, &low, &high);
-  const double least = std::max(kLeast * (high - low), 1e-12);
+  const double least = std::max(kMinNoise * (high - low), 1e-12);
   const int stride = std::max(1, static_cast<int>(static_cast<double>(grey.total()) / kSamples));
   std::vector<float> seen;
   for (int y = stride / 2; y < grey.rows; y += stride) {
@@ -425,7 +427,8 @@ double noise_level(const cv::Mat1f& grey) {
     for (int x = 1; x + 1 < grey.cols; ++x) seen.push_back(std::abs(v[x - 1] - 2 * v[x] + v[x + 1]));
   }
   if (seen.empty()) return least;
-  const auto at = seen.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(seen.size()));
+  const auto at =
+      seen.begin() + static_cast<std::ptrdiff_t>(kFlattestShare * static_cast<double>(seen.size()));
   std::nth_element(seen.begin(), at, seen.end());
   return std::max(least, static_cast<double>(*at) / (kQuantile * std::sqrt(6.0)));
 }

@@ -14,7 +14,7 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr int kLeastSweeps = 2;  // before the fit can have converged
+constexpr int kMinSweeps = 2;  // before the fit can have converged
 // Smallest mean residual of a pale disc that was not proposed, seen once its neighbours are in place.
 constexpr double kMissedPale = 0.22;
 constexpr double kBlurSettled = 0.03;  // of s^2: displaces no touching bead by more than its error
@@ -39,9 +39,9 @@ std::vector<Proposal> by_place(const std::vector<Proposal>& proposals, double ba
 /// and those of discs out of focus do not meet in a point. The second sweep fits the discs that were found
 /// missing after the first.
 int sweeps_of_fast(const FrameModel& frame) {
-  constexpr double kSmall = 4.5;    // px
-  constexpr double kBlurred = 1.7;  // px^2
-  return frame.priors.smallest() < kSmall || frame.blur.variance > kBlurred ? 2 : 1;
+  constexpr double kMinRadius_px = 4.5;
+  constexpr double kMaxBlurVariance = 1.7;  // px^2
+  return frame.priors.smallest() < kMinRadius_px || frame.blur.variance > kMaxBlurVariance ? 2 : 1;
 }
 
 /// The blur parameters that a sweep fits.
@@ -53,7 +53,7 @@ class BlurSchedule {
   [[nodiscard]] BlurFit of_sweep(int sweep) const { return settled_ || sweep == 1 ? BlurFit::none : fit_; }
   /// A motion of the bed during the exposure is visible only when the discs are in place; then it is fitted.
   void follow(int sweep, const SweepResult& moved, const FrameModel& frame) {
-    settled_ = settled_ || (sweep > kLeastSweeps + 1 && !moved.damped && moved.blur < kBlurSettled);
+    settled_ = settled_ || (sweep > kMinSweeps + 1 && !moved.damped && moved.blur < kBlurSettled);
     if (fit_ == BlurFit::uneven && frame.blur_has_direction)
       fit_ = *frame.blur_has_direction ? BlurFit::path : BlurFit::round;
   }
@@ -76,16 +76,17 @@ class Convergence {
     shrinks_ = left_ < before_ ? left_ / before_ : 1;
     before_ = moved.rms;
     const double next = shrinks_ * left_, next_most = shrinks_ * moved.most;
-    reached_ = sweep >= kLeastSweeps && !moved.damped && !moved.pruned && moved.blur < kBlurSettled &&
-               next < kEnough * moved.sigma && next_most < std::max(tolerance_px_, kWorst * moved.sigma);
+    reached_ = sweep >= kMinSweeps && !moved.damped && !moved.pruned && moved.blur < kBlurSettled &&
+               next < kMaxRmsStep * moved.sigma &&
+               next_most < std::max(tolerance_px_, kMaxStep * moved.sigma);
   }
   [[nodiscard]] bool reached() const { return reached_; }
   /// Ratio of the next step to this one: about that of this step to the last.
   [[nodiscard]] double shrinks() const { return shrinks_; }
 
  private:
-  static constexpr double kEnough = 0.5;  // rms step at convergence, in uncertainties of a position
-  static constexpr double kWorst = 3;     // the same for the largest step
+  static constexpr double kMaxRmsStep = 0.5;  // at convergence, in uncertainties of a position
+  static constexpr double kMaxStep = 3;       // the same for the largest step
   double tolerance_px_, before_ = HUGE_VAL, left_ = 0, shrinks_ = 1;
   bool reached_ = false;
 };

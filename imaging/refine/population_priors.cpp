@@ -18,8 +18,8 @@ struct Scatter {
   /// \param least lower bound of the spread
   /// \param rows row step of the fit that gave the values
   void learn(Prior& prior, double least, int rows) {
-    constexpr std::size_t kEnough = 20;
-    if (values.size() < kEnough) return;
+    constexpr std::size_t kMinBeads = 20;
+    if (values.size() < kMinBeads) return;
     const double middle = upper_median(values);
     const double scatter = robust_spread(std::move(values), middle);
     const double own = scatter * scatter - rows * upper_median(variances);
@@ -66,7 +66,7 @@ void PopulationPriors::expect_alike(const std::vector<Detection>& beads) {
 
 void PopulationPriors::learn(const std::vector<Detection>& beads, const std::vector<RingSums>& sums,
                              double ring_px, int rows) {
-  constexpr double kLeastRadius = 0.002, kLeastDarkness = 0.003;
+  constexpr double kMinRadius = 0.002, kMinDarkness = 0.003;
   constexpr double kMostlySeen = 0.8;         // of the ring
   constexpr std::size_t kInvertedMost = 200;  // a median needs no more variances
   std::vector<Scatter> radii(radii_.size());
@@ -83,8 +83,8 @@ void PopulationPriors::learn(const std::vector<Detection>& beads, const std::vec
     darkness.variances.push_back(covariance(kA, kA));
   }
   for (std::size_t k = 0; k < radii_.size(); ++k)
-    radii[k].learn(radii_[k], kLeastRadius * nominal_radii_[k], rows);
-  darkness.learn(darkness_, kLeastDarkness, rows);
+    radii[k].learn(radii_[k], kMinRadius * nominal_radii_[k], rows);
+  darkness.learn(darkness_, kMinDarkness, rows);
 }
 
 void PopulationPriors::add_to(Normal& a, Step& g, const Detection& bead) const {

@@ -202,11 +202,11 @@ class ProfileFit {
   /// two, which no step corrects, and they miss discs that are surrounded by the rims of their neighbours.
   /// The correlation with the profile uses all pixels of a disc instead. A voted disc without a similar
   /// position nearby, for example outside the frame, is kept but not used for learning.
-  void propose_alike() {
+  void propose_similar() {
     std::vector<Detection> voted;
     std::swap(voted, beads_);
     taken_.setTo(0);
-    add_alike(image_.darkness);
+    add_similar(image_.darkness);
     for (Detection& b : voted) {
       if (taken(b)) continue;
       b.score = 0;
@@ -220,7 +220,7 @@ class ProfileFit {
     taken_.setTo(0);
     for (const Detection& b : beads_) take(b);
     const std::size_t before = beads_.size();
-    add_alike(image_.darkness - model_);
+    add_similar(image_.darkness - model_);
     if (beads_.size() > before) render();
   }
 
@@ -257,7 +257,7 @@ class ProfileFit {
   }
 
   /// Adds discs where the picture resembles the profile and there is room, in the order of correlation.
-  void add_alike(const cv::Mat1f& picture) {
+  void add_similar(const cv::Mat1f& picture) {
     const cv::Mat1f like = likeness(picture);
     std::vector<Detection> tops;
     for (int y = 0; y < like.rows; ++y)
@@ -407,7 +407,7 @@ Refined refine_by_profile(const Prepared& image, const std::vector<Proposal>& pr
   fit.start(proposals);
   fit.learn(fit.typical_score());
   for (int k = 0; k < kLessons && !fit.empty(); ++k) {
-    fit.propose_alike();
+    fit.propose_similar();
     fit.learn(kLike);
   }
   // Fitting and learning in turn.

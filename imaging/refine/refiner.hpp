@@ -55,6 +55,7 @@ struct Refiner {
   DiscModel model;
   Refined (*fit)(const Prepared& image, const std::vector<Proposal>& proposals, double radius_px,
                  const RefineOptions& options);
+  bool layers = false;  ///< for beads in two layers, whose discs overlap in projection
 };
 
 /// The names of all refiners; the first is the default.
@@ -63,7 +64,7 @@ std::vector<std::string> refiner_names();
 std::string refiners_help();
 /// \throws ConfigError naming the option and the known names if no refiner has that name
 const Refiner& refiner_named(const std::string& word);
-/// The model of the refiner of that name.
+/// The model of the refiner that the options name.
 inline DiscModel model_of(const RefineOptions& options) {
   return refiner_named(options.method).model;
 }

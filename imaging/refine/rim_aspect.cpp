@@ -33,8 +33,8 @@ double weighted_median(Parts parts, Value&& of) {
 }  // namespace
 
 std::string Aspect::doubt() const {
-  constexpr double kLeast = 0.015, kSure = 4;
-  if (!(std::abs(ratio - 1) > std::max(kLeast, kSure * error))) return {};
+  constexpr double kMinDeviation = 0.015, kMinSignificance = 4;  // of the ratio from 1; standard errors
+  if (!(std::abs(ratio - 1) > std::max(kMinDeviation, kMinSignificance * error))) return {};
   return fmt::format(
       "the beads are {:.3f} +- {:.3f} times as high as they are wide in the picture: its pixels are not "
       "square, and all lengths along y, as the amplitude and heights, are wrong by this factor; resize the "
@@ -43,11 +43,12 @@ std::string Aspect::doubt() const {
 }
 
 void RimAspect::add(const cv::Mat& grey, const std::vector<Detection>& discs, std::array<double, 2> path_px) {
-  constexpr double kLongestPath = 0.5, kBackground = 0.2;
+  constexpr double kMaxPath = 0.5;        // during the exposure, R
+  constexpr double kMaxBackground = 0.2;  // deviation outside the rim, fraction of the step at it
   // Each sample is the mean over three directions that are a third of the angle apart.
   const double mean_of_second = (1 + 2 * std::cos(4 * std::numbers::pi / (3 * kRimDirections))) / 3;
   constexpr Eigen::Index kParameters = 4;
-  constexpr double kLeastWeight = 1;  // of the 12 of a whole rim
+  constexpr double kMinWeight = 1;  // of the 12 of a whole rim
   cv::Mat1f levels;
   grey.convertTo(levels, CV_32F);
   const std::vector<RimSamples> rims = rim_samples(levels, discs);
@@ -55,7 +56,7 @@ void RimAspect::add(const cv::Mat& grey, const std::vector<Detection>& discs, st
   for (std::size_t b = 0; b < discs.size(); ++b) {
     const RimSamples& rim = rims[b];
     const double radius = discs[b].radius;
-    if (rim.turns.empty() || std::hypot(path_px[0], path_px[1]) > kLongestPath * radius) continue;
+    if (rim.turns.empty() || std::hypot(path_px[0], path_px[1]) > kMaxPath * radius) continue;
     const double outside = median_of(rim.levels.col(kRimSteps - 1)),
                  step = median_of(rim.levels.col(0)) - outside,
                  interval = 2 * rim_width_px(radius) / (kRimSteps - 1);
@@ -65,7 +66,7 @@ void RimAspect::add(const cv::Mat& grey, const std::vector<Detection>& discs, st
     Eigen::Index n = 0;
     for (Eigen::Index k = 0; k < rim.levels.rows(); ++k) {
       const auto inside = ((rim.levels.row(k).array() - outside) / step).eval();
-      if (std::abs(inside(kRimSteps - 1)) > kBackground) continue;
+      if (std::abs(inside(kRimSteps - 1)) > kMaxBackground) continue;
       const double turn = rim.turns[static_cast<std::size_t>(k)];
       edge(n) = interval * (inside.sum() - 0.5 * (inside(0) + inside(kRimSteps - 1)));
       first.row(n) << 1, std::cos(turn), std::sin(turn);
@@ -76,7 +77,7 @@ void RimAspect::add(const cv::Mat& grey, const std::vector<Detection>& discs, st
     const auto solver = first.topRows(n).colPivHouseholderQr();
     second.head(n) -= first.topRows(n) * solver.solve(second.head(n)).eval();
     const double weight = second.head(n).squaredNorm();
-    if (weight < kLeastWeight) continue;
+    if (weight < kMinWeight) continue;
     const double across = (path_px[0] * path_px[0] - path_px[1] * path_px[1]) / (radius * radius);
     discs_.push_back({second.head(n).dot(edge.head(n)) / (weight * radius * mean_of_second), weight, across});
     ++measured;
@@ -85,8 +86,8 @@ void RimAspect::add(const cv::Mat& grey, const std::vector<Detection>& discs, st
 }
 
 std::optional<Aspect> RimAspect::value() const {
-  constexpr std::size_t kFewest = 5;
-  if (most_ < kFewest) return std::nullopt;
+  constexpr std::size_t kMinDiscs = 5;  // in one picture
+  if (most_ < kMinDiscs) return std::nullopt;
   const double all_alike = std::min_element(discs_.begin(), discs_.end(), [](const Part& a, const Part& b) {
                              return std::abs(a.across) < std::abs(b.across);
                            })->across;

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// Ratio of the extents of discs along y and x of the picture. The beads are round, so that it is the ratio
-/// of the pixels' sides: a film that was resized along one side, or was recorded by an anamorphic camera, has
-/// another one than 1.
+/// of the pixels' sides. It differs from 1 if a film was resized along one side, or was recorded by an
+/// anamorphic camera.
 
 #include <array>
 #include <cstddef>
@@ -29,10 +29,10 @@ struct Aspect {
 /// In each direction in which the rim is seen (rim_samples.hpp), the integral of the grey levels along the
 /// radius, in units of the step from outside to inside, is the distance of the edge from the centre. Blur
 /// does not change it. A path L during the exposure changes it by L^2/(24 R) across the path, which is
-/// subtracted, except for the shortest path of all frames: stretched discs look as moved ones, alike in all
-/// frames. What varies with the cosine of the direction is an error of the centre; the part R e cos 2 turn
-/// gives the ratio (1 - e)/(1 + e). Directions beside what is no disc, as a wall, are left out: those in
-/// which the outermost level is not that of the background.
+/// subtracted, except for the shortest path of all frames: stretched discs look like moving ones, in all
+/// frames in the same way. What varies with the cosine of the direction is an error of the centre; the part R
+/// e cos 2 turn gives the ratio (1 - e)/(1 + e). Directions beside objects that are not discs, such as a
+/// wall, are left out: those in which the outermost level is not that of the background.
 class RimAspect {
  public:
   /// \param grey in the orientation in which the discs were located

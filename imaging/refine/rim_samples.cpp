@@ -11,9 +11,9 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr int kTimes = 3;       // samples that are averaged for each direction
-constexpr double kApart = 1.5;  // px from the rims of other discs
-constexpr int kLeastDirections = kRimDirections / 3;
+constexpr int kSamplesPerDirection = 3;  // averaged
+constexpr double kMinGap_px = 1.5;       // to the rims of other discs
+constexpr int kMinDirections = kRimDirections / 3;
 
 double interpolated(const cv::Mat1f& grey, double x, double y) {
   const int i = std::min(static_cast<int>(x), grey.cols - 2),
@@ -33,18 +33,19 @@ RimSamples samples_of(const cv::Mat1f& grey, const Detection& d, const std::vect
   for (int k = 0; k < kRimDirections; ++k) {
     std::array<double, kRimSteps> sum{};
     bool seen = true;
-    for (int t = 0; t < kTimes && seen; ++t) {
-      const double turn = 2 * std::numbers::pi * (k * kTimes + t + 0.5) / (kRimDirections * kTimes);
+    for (int t = 0; t < kSamplesPerDirection && seen; ++t) {
+      const double turn = 2 * std::numbers::pi * (k * kSamplesPerDirection + t + 0.5) /
+                          (kRimDirections * kSamplesPerDirection);
       // Outermost first, because there it is most often hidden.
       for (int step = kRimSteps - 1; step >= 0 && seen; --step) {
         const double x = d.x + at(step) * std::cos(turn), y = d.y + at(step) * std::sin(turn);
         seen = x >= 0 && y >= 0 && x <= grey.cols - 1 && y <= grey.rows - 1 &&
                (walls.empty() || walls(cvRound(y), cvRound(x)) == 0) &&
                std::none_of(others.begin(), others.end(), [&](const Detection* o) {
-                 const double dx = x - o->x, dy = y - o->y, far = o->radius + kApart;
+                 const double dx = x - o->x, dy = y - o->y, far = o->radius + kMinGap_px;
                  return dx * dx + dy * dy < far * far;
                });
-        if (seen) sum[static_cast<std::size_t>(step)] += interpolated(grey, x, y) / kTimes;
+        if (seen) sum[static_cast<std::size_t>(step)] += interpolated(grey, x, y) / kSamplesPerDirection;
       }
     }
     if (!seen) continue;
@@ -52,7 +53,7 @@ RimSamples samples_of(const cv::Mat1f& grey, const Detection& d, const std::vect
     levels.push_back(sum);
   }
   const auto n = static_cast<Eigen::Index>(levels.size());
-  if (n < kLeastDirections) return {};
+  if (n < kMinDirections) return {};
   rim.levels.resize(n, kRimSteps);
   for (Eigen::Index k = 0; k < n; ++k)
     rim.levels.row(k) =
@@ -71,7 +72,7 @@ std::vector<RimSamples> rim_samples(const cv::Mat1f& grey, const std::vector<Det
     for (const Detection& d : *list) {
       places.push_back({d.x, d.y, d.radius, 1});
       all.push_back(&d);
-      reach = std::max(reach, rim_width_px(d.radius) + kApart);
+      reach = std::max(reach, rim_width_px(d.radius) + kMinGap_px);
     }
   std::vector<std::vector<const Detection*>> neighbours(all.size());
   for (const auto& [i, j] : near_pairs(places, reach)) {

@@ -16,8 +16,8 @@ inline constexpr int kRimSteps = 13;  ///< samples along the radius
 
 /// Half width of the band of samples about the rim, px: 0.35 R, at least 2 px.
 inline double rim_width_px(double radius_px) {
-  constexpr double kWidth = 0.35, kLeast = 2;
-  return std::max(kWidth * radius_px, kLeast);
+  constexpr double kWidthOfRadius = 0.35, kMinWidth_px = 2;
+  return std::max(kWidthOfRadius * radius_px, kMinWidth_px);
 }
 
 /// The rim of a disc in the directions in which it is seen.

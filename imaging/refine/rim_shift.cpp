@@ -14,7 +14,7 @@ namespace twincell::imaging {
 namespace {
 
 constexpr std::size_t kSectors = RimShift::kSectors;
-constexpr std::size_t kLeastSectors = kSectors / 3;
+constexpr std::size_t kMinSectors = kSectors / 3;
 
 /// Functions of the direction, in the middle of each sector.
 std::array<double, kSectors> in_sectors(double (*of)(double), double times) {
@@ -30,8 +30,8 @@ double sine(double x) {
   return std::sin(x);
 }
 
-/// Subtracts what a shift of the circle and a change of its radius explain. \returns false if too little of
-/// the rim is seen
+/// Subtracts the best-fit circle: a shift of the centre and a change of the radius. \returns false if too
+/// little of the rim is seen
 bool subtract_circle(RimShift& rim, double least_weight) {
   static const std::array<double, kSectors> c = in_sectors(cosine, 1), s = in_sectors(sine, 1);
   Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
@@ -44,13 +44,13 @@ bool subtract_circle(RimShift& rim, double least_weight) {
     a += rim.weight[k] * f * f.transpose();
     right += rim.weight[k] * rim.px[k] * f;
   }
-  if (seen < kLeastSectors) return false;
+  if (seen < kMinSectors) return false;
   const Eigen::Vector3d of = a.ldlt().solve(right);
   for (std::size_t k = 0; k < kSectors; ++k) rim.px[k] -= of[0] + of[1] * c[k] + of[2] * s[k];
   return true;
 }
 
-/// Subtracts what goes with a function of the direction alike in all discs.
+/// Subtracts the component in a function of the direction that all discs have in common.
 void subtract_common(std::vector<RimShift>& rims, const std::array<double, kSectors>& f) {
   double sum = 0, squares = 0;
   for (const RimShift& rim : rims)
@@ -63,7 +63,7 @@ void subtract_common(std::vector<RimShift>& rims, const std::array<double, kSect
     for (std::size_t k = 0; k < kSectors; ++k) rim.px[k] -= sum / squares * f[k];
 }
 
-/// Mean square of the shifts, px^2, without the part that the residuals cause.
+/// Mean square of the shifts, px^2, less the part expected from the noise of the residuals.
 double mean_square(const RimShift& rim) {
   constexpr double kSubtracted = 3;  // parameters of the circle
   double sum = 0, weight = 0, seen = 0;
@@ -78,15 +78,15 @@ double mean_square(const RimShift& rim) {
 /// The largest of the values that exceeds the lower quartile of their distribution with a probability of at
 /// most 0.001; the least if there are too few. \pre not empty
 double below_quartile(std::vector<double> values) {
-  constexpr double kFalseAlarm = 1e-3, kShare = 0.25;
+  constexpr double kFalseAlarm = 1e-3, kQuartile = 0.25;  // probabilities
   std::sort(values.begin(), values.end());
   const auto n = static_cast<double>(values.size());
-  // values[k] exceeds it if at most k of the n are below it, each with the probability kShare.
-  double log_term = n * std::log(1 - kShare), probability = std::exp(log_term);
+  // values[k] exceeds it if at most k of the n are below it, each with the probability kQuartile.
+  double log_term = n * std::log(1 - kQuartile), probability = std::exp(log_term);
   std::size_t k = 0;
   while (k + 1 < values.size()) {
     const auto below = static_cast<double>(k);
-    log_term += std::log((n - below) / (below + 1) * kShare / (1 - kShare));
+    log_term += std::log((n - below) / (below + 1) * kQuartile / (1 - kQuartile));
     probability += std::exp(log_term);
     if (probability > kFalseAlarm) break;
     ++k;
@@ -98,12 +98,12 @@ double below_quartile(std::vector<double> values) {
 
 double rim_shift(const std::vector<Detection>& discs, const std::vector<RimShift>& rims,
                  const std::vector<double>& radii_px) {
-  constexpr std::size_t kEnough = 3;    // discs that show what they have in common
-  constexpr double kLeastWeight = 0.1;  // of a sector that is seen
+  constexpr std::size_t kMinDiscs = 3;  // that show what they have in common
+  constexpr double kMinWeight = 0.1;    // of a sector that is seen
   std::vector<double> most;
   for (const RimShift& rim : rims) most.push_back(*std::max_element(rim.weight.begin(), rim.weight.end()));
   if (most.empty()) return 0;
-  const double least_weight = std::max(kLeastWeight * upper_median(std::move(most)), 1e-12);
+  const double least_weight = std::max(kMinWeight * upper_median(std::move(most)), 1e-12);
   std::vector<RimShift> seen;
   std::vector<std::size_t> of;
   for (std::size_t b = 0; b < rims.size(); ++b) {
@@ -112,7 +112,7 @@ double rim_shift(const std::vector<Detection>& discs, const std::vector<RimShift
     seen.push_back(rim);
     of.push_back(b);
   }
-  if (seen.size() >= kEnough)
+  if (seen.size() >= kMinDiscs)
     for (const auto& f : {in_sectors(cosine, 2), in_sectors(sine, 2)}) subtract_common(seen, f);
   std::vector<std::vector<double>> squares(radii_px.size());
   for (std::size_t k = 0; k < seen.size(); ++k) {

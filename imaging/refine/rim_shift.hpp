@@ -1,11 +1,11 @@
 #pragma once
 /// \file
-/// How far the rims of what discs were fitted to deviate from circles.
+/// Deviation of the fitted objects' rims from circles.
 ///
 /// Discs can be fitted to polygons, crosses, the ends of rods, tiles or spots of texture, and explain much of
-/// a picture. Unlike rim_variation.hpp, which sees levels that vary with the direction, as of letters, this
-/// measure sees where the rim is. It is taken from the residuals of all discs together, so it needs no view
-/// of the ground around a disc, and holds in dense packings too.
+/// a picture. rim_variation.hpp detects levels that vary with the direction, as those of letters do; this
+/// measure detects where the rim is. It is computed from the residuals of all discs together, so it needs no
+/// view of the ground around a disc, and holds in dense packings too.
 
 #include <vector>
 
@@ -18,15 +18,15 @@ namespace twincell::imaging {
 /// missed beads, walls and beads behind them, 0.021 on a perforated table and 0.026 in a blurred crystal;
 /// 0.013 to 0.017 for octagons, 0.022 to 0.029 for honeycombs, 0.03 to 0.035 for hexagons, 0.04 to 0.06 for
 /// pentagons, 0.08 to 0.09 for squares, and more for rods, crosses and textures.
-inline constexpr double kMostRimShift = 0.028;
+inline constexpr double kMaxRimShift = 0.028;
 
 /// Root mean square deviation of the rims of discs from circles, in units of their radius: the lower quartile
 /// over the discs of a size, for the size with the largest.
 ///
-/// Subtracted are the best circle of each disc (errors of R and of the centre, light from one side), what
-/// goes with the cosine of twice the direction alike in three or more discs (motion, astigmatism, stretched
-/// pixels), and the part of the mean square that the residuals cause by chance. Sectors count by their
-/// weight, so those at contacts count little.
+/// Three contributions are subtracted: the best-fit circle of each disc (errors of R and of the centre, light
+/// from one side); the component in cos 2 phi and sin 2 phi, phi the direction from the centre, that three or
+/// more discs have in common (motion, astigmatism, stretched pixels); and the mean square that the noise of
+/// the residuals is expected to add. Sectors count by their weight, so those at contacts count little.
 ///
 /// \param rims     of picture_evidence
 /// \param radii_px the sizes; each disc belongs to the nearest. At least one

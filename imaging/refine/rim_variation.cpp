@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kNoise = 0.35;  // variance of a mean of three interpolated samples, in variances of a pixel
 
-/// What of the rim of a disc does not depend on r alone, in units of the scatter along the radius.
+/// Part of the rim signal that does not depend on r alone, in units of the scatter along the radius.
 struct Rim {
   std::size_t size = 0;                                     // index of the size
   std::vector<double> turns;                                // the directions in which it is seen
@@ -44,7 +44,8 @@ Rim rim_of(const RimSamples& samples, double noise) {
   return rim;
 }
 
-/// Subtracts what varies with a function of the direction alike in all discs.
+/// Subtracts the part of the rim signal that varies with a function of the direction in the same way in all
+/// discs.
 template <class Function>
 void subtract_common(std::vector<Rim>& rims, Function&& of) {
   Eigen::Matrix<double, 1, kRimSteps> sum = Eigen::Matrix<double, 1, kRimSteps>::Zero();
@@ -66,8 +67,8 @@ void subtract_common(std::vector<Rim>& rims, Function&& of) {
 double rim_variation(const cv::Mat& grey, const std::vector<Detection>& discs,
                      const std::vector<double>& radii_px, const std::vector<Detection>& others,
                      const cv::Mat1b& walls) {
-  constexpr std::size_t kEnough = 3;        // discs that show what they have in common
-  constexpr double kRepresentative = 0.25;  // least share of discs that show their rims
+  constexpr std::size_t kMinDiscs = 3;       // that show what they have in common
+  constexpr double kMinShareOfDiscs = 0.25;  // that show their rims
   if (discs.empty() || std::min(grey.cols, grey.rows) < 2) return 0;
   cv::Mat1f levels;
   grey.convertTo(levels, CV_32F);
@@ -80,8 +81,8 @@ double rim_variation(const cv::Mat& grey, const std::vector<Detection>& discs,
     rim.size = nearest_size(discs[b].radius, radii_px);
     rims.push_back(std::move(rim));
   }
-  if (static_cast<double>(rims.size()) < kRepresentative * static_cast<double>(discs.size())) return 0;
-  if (rims.size() >= kEnough) {
+  if (static_cast<double>(rims.size()) < kMinShareOfDiscs * static_cast<double>(discs.size())) return 0;
+  if (rims.size() >= kMinDiscs) {
     subtract_common(rims, [](double turn) { return std::cos(2 * turn); });
     subtract_common(rims, [](double turn) { return std::sin(2 * turn); });
   }
@@ -91,7 +92,7 @@ double rim_variation(const cv::Mat& grey, const std::vector<Detection>& discs,
     const double freedom = (static_cast<double>(rim.turns.size()) - kSubtracted) * kRimSteps;
     variations[rim.size].push_back(rim.rest.squaredNorm() / freedom - rim.noise);
   }
-  // What lies beside beads may spoil the rims of most of them, but a further size must be clearly seen.
+  // Objects beside beads may disturb the rims of most of them, but a further size must be clearly seen.
   const double share = radii_px.size() > 1 ? 0.5 : 0.25;
   double largest = 0;
   for (std::vector<double>& of_size : variations)

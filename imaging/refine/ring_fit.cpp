@@ -17,10 +17,10 @@ namespace {
 
 // A disc paler than kMinDarkness is rejected, unless pale ones are wanted and it explains its ring as well as
 // the sharpest beads do, once positions and blur are known.
-constexpr double kMinDarkness = 0.4, kPalest = 0.2;
-constexpr double kClear = 0.85;     // Detection::score
-constexpr double kPaleSize = 0.06;  // largest relative difference of R
-constexpr int kBlurIsKnown = 4;     // sweeps
+constexpr double kMinDarkness = 0.4, kMinPaleDarkness = 0.2;
+constexpr double kMinPaleScore = 0.85;  // Detection::score
+constexpr double kPaleSize = 0.06;      // largest relative difference of R
+constexpr int kBlurIsKnown = 4;         // sweeps
 // A disc whose radius differs from all sizes by this much, relative, is several discs fitted as one.
 constexpr double kSizeTolerance = 0.2;
 // Number of sweeps that estimate the scatter of R and a from disc to disc.
@@ -135,9 +135,9 @@ std::optional<Verdict> RingFit::objection_to(std::size_t bead) const {
   const double size = frame_.priors.nominal_radius(b.radius);
   const double out = size + std::sqrt(frame_.blur.variance);
   const bool settled = sweeps_ >= kBlurIsKnown;
-  if (b.darkness < kMinDarkness &&
-      (!frame_.options.pale || b.darkness < kPalest ||
-       (settled && (std::abs(b.radius - size) > kPaleSize * size || explained_share(sums_[bead]) < kClear))))
+  if (b.darkness < kMinDarkness && (!frame_.options.pale || b.darkness < kMinPaleDarkness ||
+                                    (settled && (std::abs(b.radius - size) > kPaleSize * size ||
+                                                 explained_share(sums_[bead]) < kMinPaleScore))))
     return Verdict::pale;
   if (frame_.priors.several_sizes() && sweeps_ >= kSizeSettles &&
       std::abs(b.radius - size) > kSizeTolerance * size)

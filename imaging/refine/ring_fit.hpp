@@ -16,12 +16,12 @@ inline constexpr int kFirstRows = 2;
 /// After so many sweeps the 2 % of the discs that move most are ignored: they are not beads.
 inline constexpr int kSweepsBeforeTrimming = 12;
 
-/// What a sweep did.
+/// Result of a sweep.
 struct SweepResult {
   double most = 0;      ///< largest step of a bead, px
   double rms = 0;       ///< rms step per coordinate, px
   double sigma = 0;     ///< uncertainty of a typical bead's position, px
-  bool damped = false;  ///< so the lengths are no measure of convergence
+  bool damped = false;  ///< so the lengths do not measure convergence
   bool pruned = false;  ///< beads were dropped before this step
   double blur = 0;      ///< change of s^2, as returned by `fit_blur`
 };

@@ -81,12 +81,13 @@ struct Uneven {
 /// Decides whether the blur has a direction, from its step without the couplings of the discs.
 /// \returns whether it has one in this sweep
 bool has_direction(FrameModel& frame, const BlurEquations& equations, const DiscSteps& discs) {
-  constexpr double kClear = 0.04, kNear = 0.1;  // of s^2
+  constexpr double kMinExcess = 0.04, kMaxMeanStep = 0.1;  // fractions of s^2
   std::vector<Step> alone = discs.steps;
   const Uneven seen(blur_step(equations, frame.blur.variance, discs.blocks, {}, alone));
   // A mean blur that is still wrong also appears to depend on direction.
-  const bool directed = seen.more > std::max(kClear * frame.blur.variance, std::abs(seen.mean));
-  if (directed || std::abs(seen.mean) < kNear * frame.blur.variance) frame.blur_has_direction = directed;
+  const bool directed = seen.more > std::max(kMinExcess * frame.blur.variance, std::abs(seen.mean));
+  if (directed || std::abs(seen.mean) < kMaxMeanStep * frame.blur.variance)
+    frame.blur_has_direction = directed;
   return directed;
 }
 
@@ -121,16 +122,16 @@ double apply(FrameModel& frame, BlurFit fit, const Eigen::VectorXd& step) {
 }  // namespace
 
 double fit_blur(FrameModel& frame, BlurFit fit, const DiscSteps& discs) {
-  constexpr double kLeast = 0.09, kMost = 36, kWide = 0.7;  // px^2
+  constexpr double kMinVariance = 0.09, kMaxVariance = 36, kWideVariance = 0.7;  // px^2
   if (fit == BlurFit::none) return 0;
   BlurEquations equations = blur_equations(fit, discs.sums);
   if (fit == BlurFit::uneven && !has_direction(frame, equations, discs)) equations = rounded(equations);
   const double old = frame.blur.variance;
   const Eigen::VectorXd step = blur_step(equations, old, discs.blocks, discs.couplings, discs.steps);
   const double widened = apply(frame, fit, step);
-  frame.blur.variance = std::clamp(frame.blur.variance, kLeast, kMost);
+  frame.blur.variance = std::clamp(frame.blur.variance, kMinVariance, kMaxVariance);
   // For a wide blur the same relative change moves the discs farther.
-  return widened / std::min(old, kWide);
+  return widened / std::min(old, kWideVariance);
 }
 
 }  // namespace twincell::imaging

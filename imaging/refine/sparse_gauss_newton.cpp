@@ -8,7 +8,7 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr int kMostIterations = 40;
+constexpr int kMaxIterations = 40;
 constexpr double kRelative = 1e-2;
 
 }  // namespace
@@ -66,17 +66,17 @@ std::vector<std::array<std::int32_t, 2>> near_pairs(const std::vector<Disc>& dis
 void renew(Coupling& c, const RingArgs& args, const std::vector<Disc>& discs) {
   // Farther than this from one of the two edges, its slope is negligible. Omitting these pixels from the
   // coupling keeps the matrix positive definite, because they still count in both diagonal blocks.
-  constexpr double kFar = 3;
+  constexpr double kEdgeReach = 3;  // widths of the blur
   RingArgs narrow = args;
-  narrow.ring = std::min(args.ring, args.blur.reach(kFar));
+  narrow.ring = std::min(args.ring, args.blur.reach(kEdgeReach));
   const PairSums sums =
       pair_sums(narrow, discs[static_cast<std::size_t>(c.i)], discs[static_cast<std::size_t>(c.j)]);
   c.sums = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(sums.data());
 }
 
 std::vector<Coupling> couplings_of(const RingArgs& args, const std::vector<Disc>& discs) {
-  constexpr double kFar = 3;  // edges farther apart, in widths of the blur, share almost no pixels
-  const auto pairs = near_pairs(discs, std::min(2 * args.ring, args.blur.reach(kFar)));
+  constexpr double kMaxEdgeGap = 3;  // widths of the blur; edges farther apart share almost no pixels
+  const auto pairs = near_pairs(discs, std::min(2 * args.ring, args.blur.reach(kMaxEdgeGap)));
   std::vector<Coupling> couplings;
   couplings.reserve(pairs.size());
   for (const auto& [i, j] : pairs) couplings.push_back({i, j, Normal::Zero()});
@@ -98,7 +98,7 @@ std::vector<Step> gauss_newton_step(const std::vector<Normal>& blocks, const std
     rz += r[k].dot(z[k]);
   }
   const double enough = kRelative * kRelative * rz;
-  for (int iteration = 0; iteration < kMostIterations && rz > enough && rz > 0; ++iteration) {
+  for (int iteration = 0; iteration < kMaxIterations && rz > enough && rz > 0; ++iteration) {
     for (std::size_t k = 0; k < n; ++k) ap[k] = blocks[k] * p[k];
     for (const Coupling& c : couplings) {
       const auto i = static_cast<std::size_t>(c.i), j = static_cast<std::size_t>(c.j);

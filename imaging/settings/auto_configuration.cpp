@@ -29,8 +29,8 @@ namespace {
 /// Radii (px) at which the sharpness of the votes has a maximum, sharpest first.
 std::vector<double> sharp_radii(const cv::Mat1f& darkness, double smallest, double largest) {
   constexpr double kRatio = 1.03;
-  constexpr std::size_t kMost = 3;
-  constexpr double kLeast = 0.1;  // smallest sharpness, as a fraction of the largest
+  constexpr std::size_t kMaxRadii = 3;
+  constexpr double kMinSharpness = 0.1;  // smallest sharpness, as a fraction of the largest
   std::vector<double> sharpness;
   const int steps = static_cast<int>(std::log(largest / smallest) / std::log(kRatio));
   for (int k = 0; k <= steps; ++k) {
@@ -53,7 +53,7 @@ std::vector<double> sharp_radii(const cv::Mat1f& darkness, double smallest, doub
   std::sort(tops.rbegin(), tops.rend());
   std::vector<double> radii;
   for (const auto& [sharp, radius] : tops)
-    if (radii.size() < kMost && sharp > kLeast * tops[0].first) radii.push_back(radius);
+    if (radii.size() < kMaxRadii && sharp > kMinSharpness * tops[0].first) radii.push_back(radius);
   return radii;
 }
 
@@ -68,23 +68,23 @@ double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options) 
 }
 
 std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOptions& given) {
-  constexpr double kLeast = 80, kMost = 400, kRatio = 1.04;  // px
+  constexpr double kMinDiameter_px = 80, kMaxDiameter_px = 400, kRatio = 1.04;  // px
   constexpr double kShrink = 4;
   constexpr double kApart = 1.15,
                    kComparable = 0.7;  // second size: least ratio to the first; relative sharpness
   constexpr double kCovered = 0.2;     // fraction of the frame that the discs must cover
   constexpr double kNoise = 0.035;     // largest noise, relative to a disc's contrast, that creates no edges
-  constexpr double kSeen = 0.7;        // mean fraction of the rims that must be visible
-  constexpr std::ptrdiff_t kEnough = 3;
-  const double largest = std::min(kMost, 0.5 * std::min(grey.cols, grey.rows));
+  constexpr double kMinVisibleShare = 0.7;  // mean fraction of the rims that must be visible
+  constexpr std::ptrdiff_t kMinDiscs = 3;
+  const double largest = std::min(kMaxDiameter_px, 0.5 * std::min(grey.cols, grey.rows));
   std::optional<FoundSettings> best;
   for (const bool bright : {false, true}) {
-    if (largest < kLeast || (given.polarity_known && bright != given.preprocess.bright)) continue;
+    if (largest < kMinDiameter_px || (given.polarity_known && bright != given.preprocess.bright)) continue;
     LocatorOptions options = given;
     // Sizes: the sharpest votes on the reduced picture.
     options.refine.method = kEdgeRefiner.word;
     options.preprocess.bright = bright;
-    options.diameter_px = kLeast;
+    options.diameter_px = kMinDiameter_px;
     options.preprocess.contrast = find_contrast(grey, options);
     const Prepared image = prepare(grey, options.preprocess, largest / 2);
     const Noise noise = noise_of(image.darkness);
@@ -93,7 +93,7 @@ std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOp
     cv::resize(image.darkness, small, {}, 1 / kShrink, 1 / kShrink, cv::INTER_AREA);
     std::vector<std::pair<double, double>> tops;  // sharpness, diameter
     double before = 0, last = 0;
-    for (double d = kLeast; d <= largest; d *= kRatio) {
+    for (double d = kMinDiameter_px; d <= largest; d *= kRatio) {
       throw_if_cancelled();
       const double now = vote_sharpness(small, 0.5 * d / kShrink);
       if (last > before && last >= now) tops.emplace_back(last, d / kRatio);
@@ -107,12 +107,13 @@ std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOp
           std::max(d / tops[0].second, tops[0].second / d) > kApart)
         options.other_diameters_px = {d};
     std::vector<Detection> beads = locate(grey, options).beads;
-    // Refinement: each size becomes the median of its discs; a size with fewer than kEnough discs is dropped.
+    // Refinement: each size becomes the median of its discs; a size with fewer than kMinDiscs discs is
+    // dropped.
     const auto settle = [&](double d) {
       std::vector<double> radii;
       for (const Detection& b : beads)
         if (std::abs(2 * b.radius / d - 1) < kApart - 1) radii.push_back(b.radius);
-      return std::ssize(radii) < kEnough ? 0.0 : 2 * upper_median(std::move(radii));
+      return std::ssize(radii) < kMinDiscs ? 0.0 : 2 * upper_median(std::move(radii));
     };
     const double first = settle(options.diameter_px);
     if (first == 0) continue;
@@ -130,8 +131,8 @@ std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOp
       covered += std::numbers::pi * b.radius * b.radius;
       explained -= b.radius * b.radius * std::log(std::max(1 - b.score, 1e-6));
     }
-    if (covered < kCovered * grey.cols * grey.rows || std::ssize(beads) < kEnough ||
-        rims < kSeen * static_cast<double>(beads.size()))
+    if (covered < kCovered * grey.cols * grey.rows || std::ssize(beads) < kMinDiscs ||
+        rims < kMinVisibleShare * static_cast<double>(beads.size()))
       continue;
     if (!best || explained > best->explained)
       best = FoundSettings{options.diameter_px, bright, explained, options.other_diameters_px,
@@ -201,13 +202,13 @@ std::optional<FoundSettings> find_pale(const cv::Mat& grey, const LocatorOptions
 
 /// The best profiles that were tried, without those of about the same size as a better one.
 std::vector<FoundSettings> best_profiles(std::vector<FoundSettings> tried) {
-  constexpr std::size_t kMost = 3;
+  constexpr std::size_t kMaxProfiles = 3;
   constexpr double kSame = 0.04;
   std::stable_sort(tried.begin(), tried.end(),
                    [](const auto& a, const auto& b) { return a.explained > b.explained; });
   std::vector<FoundSettings> best;
   for (const FoundSettings& t : tried)
-    if (best.size() < kMost && std::none_of(best.begin(), best.end(), [&](const FoundSettings& b) {
+    if (best.size() < kMaxProfiles && std::none_of(best.begin(), best.end(), [&](const FoundSettings& b) {
           return b.bright == t.bright && std::abs(b.diameter_px / t.diameter_px - 1) < kSame;
         }))
       best.push_back(t);
@@ -216,12 +217,12 @@ std::vector<FoundSettings> best_profiles(std::vector<FoundSettings> tried) {
 
 /// Common profiles of small discs of either polarity, for which there are hardly any votes.
 std::vector<FoundSettings> small_profiles(const cv::Mat& grey, const LocatorOptions& given) {
-  constexpr double kMost = 12, kRatio = 1.12;  // px
-  constexpr int kSide = 300;
-  const cv::Mat region = busiest(grey, kSide);
+  constexpr double kMaxDiameter_px = 12, kRatio = 1.12;
+  constexpr int kExamined_px = 300;
+  const cv::Mat region = busiest(grey, kExamined_px);
   std::vector<FoundSettings> tried;
   for (const bool bright : {false, true})
-    for (double d = 2 * kSmallestRadius; d <= kMost; d *= kRatio) {
+    for (double d = 2 * kSmallestRadius; d <= kMaxDiameter_px; d *= kRatio) {
       if (given.polarity_known && bright != given.preprocess.bright) continue;
       const ProfileTrial trial = try_profile(region, given, {bright, d});
       if (trial.explained > 0)
@@ -233,15 +234,16 @@ std::vector<FoundSettings> small_profiles(const cv::Mat& grey, const LocatorOpti
 /// Whether discs of one layer leave some out that may be discs of another layer: those that overlap, and
 /// those that were fitted to two.
 bool may_overlap(const cv::Mat& grey, const LocatorOptions& given, const FoundSettings& settings) {
-  constexpr double kShare = 0.02;  // of the beads
-  constexpr std::size_t kFewest = 3;
+  constexpr double kMinShare = 0.02;  // of the beads
+  constexpr std::size_t kMinDiscs = 3;
   const Located located = locate(grey, completed(settings, given));
   const auto out = static_cast<std::size_t>(
       std::count_if(located.dropped.begin(), located.dropped.end(), [](const Detection& d) {
         return d.verdict == Verdict::overlaps || d.verdict == Verdict::wrong_radius ||
                d.verdict == Verdict::unexplained;
       }));
-  return out >= kFewest && static_cast<double>(out) >= kShare * static_cast<double>(located.beads.size());
+  return out >= kMinDiscs &&
+         static_cast<double>(out) >= kMinShare * static_cast<double>(located.beads.size());
 }
 
 /// What explains more than the chosen settings but is not round, if anything and of one size.
@@ -254,6 +256,131 @@ std::optional<FoundSettings> best_not_round(const SettingsChoice& choice) {
   return best->settings;
 }
 
+/// The search for settings in one frame.
+class SettingsSearch {
+ public:
+  /// \param frame in its canonical orientation
+  SettingsSearch(const cv::Mat& frame, const LocatorOptions& given, int threads)
+      : frame_(frame),
+        given_(given),
+        threads_(threads),
+        grey_(busiest(frame, kExaminedSide)),
+        lattice_(lattice_constant(grey_)),
+        hypotheses_(hypotheses(grey_, given, lattice_)) {}
+
+  /// Adds plain discs of all hypotheses to the candidates; if there are none, also a few large discs.
+  void propose_plain_discs() {
+    constexpr double kShrink = 4;
+    try_all(hypotheses_);
+    if (given_.diameter_px > 0 || (best_ && best_->explained > 0)) return;
+    cv::Mat small;  // in which discs of up to 320 px are found
+    cv::resize(grey_, small, {}, 1 / kShrink, 1 / kShrink, cv::INTER_AREA);
+    std::vector<Hypothesis> larger = hypotheses(small, given_, 0);
+    for (Hypothesis& h : larger) h.diameter_px *= kShrink;
+    try_all(larger);
+  }
+
+  /// Adds the other models to the candidates: common profiles, pale and patterned discs.
+  void propose_other_models() {
+    std::vector<FoundSettings> profiles;
+    if (best_ && is_open())
+      if (auto found =
+              select_profile_model(frame_, given_, hypotheses_, *best_, lattice_, threads_, profiles))
+        best_ = found;
+    if (auto pale = find_pale(grey_, given_, lattice_, best_)) best_ = pale;
+    if (best_) candidates_.insert(candidates_.begin(), *best_);
+    for (const FoundSettings& p : best_profiles(profiles)) candidates_.push_back(p);
+    if (given_.diameter_px <= 0) patterned_ = find_patterned(frame_, given_);
+    if (patterned_) candidates_.push_back(*patterned_);
+  }
+
+  /// Judges the candidates by their evidence.
+  SettingsChoice judge() {
+    constexpr double kDiscsAcross = 6;
+    region_ = {grey_, candidates_.empty() ? 0 : 0.5 * candidates_.front().diameter_px};
+    // In a crystal that fills the frame the gaps are as similar as the discs, and described as well.
+    if (lattice_ > 0) region_.clearly = kClearlyInCrystal;
+    if (patterned_)  // which may be larger than the region
+      region_.picture =
+          busiest(frame_, std::max(kExaminedSide, static_cast<int>(kDiscsAcross * patterned_->diameter_px)));
+    return confirmed(region_, given_, try_settings(region_, given_, candidates_, threads_));
+  }
+
+  /// The choice with further sizes, if something that is not round explains more: discs of sizes that are not
+  /// searched for hide rims of the others, which then do not seem round.
+  [[nodiscard]] SettingsChoice with_further_sizes(SettingsChoice choice) const {
+    const auto not_round = best_not_round(choice);
+    if (!not_round) return choice;
+    const auto mixed = find_polydisperse(grey_, given_, hypotheses_, *not_round);
+    return mixed ? with(choice, {*mixed}) : choice;
+  }
+
+  /// The choice, or that of common profiles of small discs if it is empty.
+  SettingsChoice or_small_discs(SettingsChoice choice) {
+    if (!choice.tried.empty() || !is_open()) return choice;
+    region_.neighbour_radius_px = kSmallestRadius;
+    SettingsChoice small =
+        confirmed(region_, given_, try_settings(region_, given_, small_profiles(grey_, given_), threads_));
+    const bool better = !small.tried.empty() || not_round(small) != nullptr || choice.refused.empty();
+    return better ? small : choice;
+  }
+
+  /// The choice with variants of its winner: its rims alone, two layers, further sizes.
+  [[nodiscard]] SettingsChoice with_variants_of_winner(const SettingsChoice& choice) const {
+    FoundSettings winner = choice.tried.front().settings;
+    std::vector<FoundSettings> more;
+    if (winner.method != kEdgeRefiner.word && winner.other_diameters_px.empty()) {
+      if (auto mixed = find_polydisperse(grey_, given_, hypotheses_, winner)) more.push_back(*mixed);
+      if (given_.refine.method == kExactRefiner.word) {
+        const bool plain = completed(winner, given_).refine.method == kExactRefiner.word;
+        winner.method = kEdgeRefiner.word;
+        more.push_back(winner);
+        winner.method = kOverlappingRefiner.word;
+        if (plain && may_overlap(grey_, given_, choice.tried.front().settings)) more.push_back(winner);
+      }
+    }
+    return with(choice, more);
+  }
+
+ private:
+  /// Whether the options leave the model of the discs open.
+  [[nodiscard]] bool is_open() const {
+    return given_.other_diameters_px.empty() && given_.refine.method == kExactRefiner.word;
+  }
+
+  void try_all(const std::vector<Hypothesis>& some) {
+    std::vector<FoundSettings> settled(some.size());
+    in_parallel(some.size(), threads_, [&](std::size_t k) {
+      const Trial trial = settle_plain(grey_, given_, some[k]);
+      settled[k] = {trial.diameter_px, some[k].bright, trial.explained, {}, {}};
+    });
+    for (const FoundSettings& found : settled) {
+      if (found.explained > 0 || given_.diameter_px > 0) candidates_.push_back(found);
+      if (!best_ || found.explained > best_->explained) best_ = found;
+    }
+  }
+
+  /// The choice among what was tried before and more.
+  [[nodiscard]] SettingsChoice with(const SettingsChoice& choice,
+                                    const std::vector<FoundSettings>& more) const {
+    std::vector<TriedSettings> every = choice.tried;
+    for (const TriedSettings& t : choice.refused)
+      if (!is_round(t)) every.push_back(t);
+    for (const TriedSettings& t : try_settings(region_, given_, more, threads_)) every.push_back(t);
+    return confirmed(region_, given_, std::move(every));
+  }
+
+  const cv::Mat& frame_;
+  const LocatorOptions& given_;
+  int threads_;
+  cv::Mat grey_;    ///< the part of the frame with most structure
+  double lattice_;  ///< lattice constant, px; 0: no crystal
+  std::vector<Hypothesis> hypotheses_;
+  std::vector<FoundSettings> candidates_;
+  std::optional<FoundSettings> best_, patterned_;
+  ExaminedRegion region_;
+};
+
 }  // namespace
 
 SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& given, int threads) {
@@ -261,87 +388,13 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   if (given.diameter_px <= 0 && std::min(picture.cols, picture.rows) < 2 * kSmallestRadius) return {};
   // Orientation: canonical, as in `locate`, so that a rotated picture has the same settings.
   const cv::Mat frame = canonical_picture_orientation(picture).turned(picture);
-  std::vector<FoundSettings> candidates;
-  std::optional<FoundSettings> patterned;
-  if (given.diameter_px <= 0) patterned = find_patterned(frame, given);
-  // Plain discs of all hypotheses.
-  constexpr double kShrink = 4;
-  const cv::Mat grey = busiest(frame, kExaminedSide);
-  const double lattice = lattice_constant(grey);
-  const std::vector<Hypothesis> all = hypotheses(grey, given, lattice);
-  std::optional<FoundSettings> best;
-  const auto try_all = [&](const std::vector<Hypothesis>& some) {
-    std::vector<FoundSettings> settled(some.size());
-    in_parallel(some.size(), threads, [&](std::size_t k) {
-      const Trial trial = settle_plain(grey, given, some[k]);
-      settled[k] = {trial.diameter_px, some[k].bright, trial.explained, {}, {}};
-    });
-    for (const FoundSettings& found : settled) {
-      if (found.explained > 0 || given.diameter_px > 0) candidates.push_back(found);
-      if (!best || found.explained > best->explained) best = found;
-    }
-  };
-  try_all(all);
-  if (given.diameter_px <= 0 && (!best || best->explained <= 0)) {
-    // Nothing found: a few large discs, up to 320 px.
-    cv::Mat small;
-    cv::resize(grey, small, {}, 1 / kShrink, 1 / kShrink, cv::INTER_AREA);
-    std::vector<Hypothesis> larger = hypotheses(small, given, 0);
-    for (Hypothesis& h : larger) h.diameter_px *= kShrink;
-    try_all(larger);
-  }
-  // Other models: common profile, pale discs, rims alone.
-  std::vector<FoundSettings> profiles;
-  const bool one_size = given.other_diameters_px.empty();
-  if (best && one_size && given.refine.method == kExactRefiner.word)
-    if (auto alike = select_profile_model(frame, given, all, *best, lattice, threads, profiles)) best = alike;
-  if (auto pale = find_pale(grey, given, lattice, best)) best = pale;
-  if (best) candidates.insert(candidates.begin(), *best);
-  for (const FoundSettings& p : best_profiles(profiles)) candidates.push_back(p);
-  if (patterned) candidates.push_back(*patterned);
-  // Evidence. Patterned discs may be larger than the region.
-  constexpr double kAcross = 6;
-  ExaminedRegion region{grey, candidates.empty() ? 0 : 0.5 * candidates.front().diameter_px};
-  // In a crystal that fills the frame the gaps are as alike as the discs, and described as well.
-  if (lattice > 0) region.clearly = kClearlyInCrystal;
-  if (patterned)
-    region.picture =
-        busiest(frame, std::max(kExaminedSide, static_cast<int>(kAcross * patterned->diameter_px)));
-  std::vector<TriedSettings> tried = try_settings(region, given, candidates, threads);
-  SettingsChoice choice = confirmed(region, given, std::move(tried));
+  SettingsSearch search(frame, given, threads);
+  search.propose_plain_discs();
+  search.propose_other_models();
+  SettingsChoice choice = search.judge();
   if (given.diameter_px > 0 || model_of(given.refine) != DiscModel::plain) return choice;
-  // Discs of sizes that are not searched for hide rims of the others, which then do not seem round.
-  const auto with = [&](const std::vector<FoundSettings>& more) {
-    std::vector<TriedSettings> every = choice.tried;
-    for (const TriedSettings& t : choice.refused)
-      if (!is_round(t)) every.push_back(t);
-    for (const TriedSettings& t : try_settings(region, given, more, threads)) every.push_back(t);
-    return confirmed(region, given, std::move(every));
-  };
-  if (const auto unlike = best_not_round(choice))
-    if (auto mixed = find_polydisperse(grey, given, all, *unlike)) choice = with({*mixed});
-  if (choice.tried.empty() && one_size && given.refine.method == kExactRefiner.word) {
-    region.neighbour_radius_px = kSmallestRadius;
-    SettingsChoice small =
-        confirmed(region, given, try_settings(region, given, small_profiles(grey, given), threads));
-    if (!small.tried.empty() || not_round(small) != nullptr || choice.refused.empty())
-      choice = std::move(small);
-  }
-  if (choice.tried.empty()) return choice;
-  // The size of the winner, by its rims alone and with further sizes.
-  FoundSettings winner = choice.tried.front().settings;
-  std::vector<FoundSettings> more;
-  if (winner.method != kEdgeRefiner.word && winner.other_diameters_px.empty()) {
-    if (auto mixed = find_polydisperse(grey, given, all, winner)) more.push_back(*mixed);
-    if (given.refine.method == kExactRefiner.word) {
-      const bool plain = completed(winner, given).refine.method == kExactRefiner.word;
-      winner.method = kEdgeRefiner.word;
-      more.push_back(winner);
-      winner.method = kOverlappingRefiner.word;
-      if (plain && may_overlap(grey, given, choice.tried.front().settings)) more.push_back(winner);
-    }
-  }
-  return with(more);
+  choice = search.or_small_discs(search.with_further_sizes(std::move(choice)));
+  return choice.tried.empty() ? choice : search.with_variants_of_winner(choice);
 }
 
 std::optional<FoundSettings> find_settings(const cv::Mat& picture, const LocatorOptions& given) {

@@ -38,9 +38,9 @@ LocatorOptions at_rim(const cv::Mat& frame, LocatorOptions settled, const std::v
 /// least three discs of one darkness, some of them below that of which discs usually count. Some of tracers
 /// at that darkness are found without, so that those below it may be fewer than three.
 LocatorOptions with_pale_discs(const cv::Mat& frame, const LocatorOptions& settled) {
-  constexpr double kUsual = 0.4, kNear = 0.46;  // darkness
-  constexpr double kAlike = 0.12;               // largest scatter of the darkness, relative
-  constexpr std::size_t kFewest = 3;
+  constexpr double kUsualDarkness = 0.4, kMaxPaleDarkness = 0.46;
+  constexpr double kAlike = 0.12;  // largest scatter of the darkness, relative
+  constexpr std::size_t kMinPaleDiscs = 3;
   if (model_of(settled.refine) != DiscModel::plain) return settled;
   LocatorOptions options = settled;
   options.refine.pale = true;
@@ -48,10 +48,10 @@ LocatorOptions with_pale_discs(const cv::Mat& frame, const LocatorOptions& settl
   std::vector<double> pale;
   std::size_t below = 0;
   for (const Detection& b : with) {
-    if (b.darkness < kNear) pale.push_back(b.darkness);
-    if (b.darkness < kUsual) ++below;
+    if (b.darkness < kMaxPaleDarkness) pale.push_back(b.darkness);
+    if (b.darkness < kUsualDarkness) ++below;
   }
-  if (pale.size() < kFewest) return settled;
+  if (pale.size() < kMinPaleDiscs) return settled;
   const std::size_t without = locate(frame, settled).beads.size();
   if (with.size() < without + std::max<std::size_t>(below, 1)) return settled;
   const double typical = upper_median(pale);

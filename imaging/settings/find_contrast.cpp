@@ -1,17 +1,17 @@
 #include "imaging/settings/find_contrast.hpp"
 
-#include "imaging/refine/overlapping_fit.hpp"
+#include "imaging/refine/refiner.hpp"
 #include "imaging/settings/hypothesis_test.hpp"
 
 namespace twincell::imaging {
 
 double find_contrast(const cv::Mat& grey, const LocatorOptions& options) {
+  const Refiner& refiner = refiner_named(options.refine.method);
   PreprocessOptions plain = options.preprocess;
   plain.contrast = 1;
-  if (model_of(options.refine) == DiscModel::shared_profile) return 1;
+  if (refiner.model == DiscModel::shared_profile) return 1;
   const double contrast = contrast_of(prepare(grey, plain, options.diameter_px / 2).darkness);
-  if (model_of(options.refine) == DiscModel::circle || options.refine.method == kOverlappingRefiner.word)
-    return contrast;
+  if (refiner.model == DiscModel::circle || refiner.layers) return contrast;
   if (contrast >= kPale) return 1;
   const cv::Mat part = busiest(grey, kExaminedSide);
   const auto explained = [&](double by) {

@@ -24,8 +24,8 @@ struct TriedSettings {
   double evidence = 0;    ///< of the picture for the discs located with them, nats (picture_evidence.hpp)
   std::size_t beads = 0;  ///< discs located with them
   double rim_variation =
-      0;                   ///< of these discs (rim_variation.hpp); they are not round above kMostRimVariation
-  double rim_shift = 0;    ///< of these discs (rim_shift.hpp), in radii; not round above kMostRimShift
+      0;                   ///< of these discs (rim_variation.hpp); they are not round above kMaxRimVariation
+  double rim_shift = 0;    ///< of these discs (rim_shift.hpp), in radii; not round above kMaxRimShift
   std::string not_chosen;  ///< why others with less evidence were chosen, in words; empty: they were not
 };
 

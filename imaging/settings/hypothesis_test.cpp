@@ -37,7 +37,7 @@ bool overlap(const std::vector<Detection>& beads, double wider = 1) {
 /// twentieths of their own rings.
 Trial try_plain(const cv::Mat& grey, const LocatorOptions& options) {
   constexpr double kGood = 0.8;  // smallest score of a bead whose size is used
-  constexpr std::size_t kEnough = 3;
+  constexpr std::size_t kMinDiscs = 3;
   Trial trial;
   std::vector<double> radii;
   const std::vector<Detection> beads = locate(grey, options).beads;
@@ -47,7 +47,8 @@ Trial try_plain(const cv::Mat& grey, const LocatorOptions& options) {
     trial.explained += gained(b);
     if (!b.edge) radii.push_back(b.radius);
   }
-  if (radii.size() >= kEnough) trial.diameter_px = std::clamp(2 * upper_median(std::move(radii)), 3.0, 400.0);
+  if (radii.size() >= kMinDiscs)
+    trial.diameter_px = std::clamp(2 * upper_median(std::move(radii)), 3.0, 400.0);
   return trial;
 }
 
@@ -91,8 +92,8 @@ ProfileTrial try_profile(const cv::Mat& grey, LocatorOptions options, const Hypo
 }
 
 bool ProfileTrial::has_plain_shape() const {
-  constexpr double kUnlike = 0.012;  // largest DiscProfile::unlike_plain of a plain disc
-  return explained > 0 && profile.unlike_plain() < kUnlike;
+  constexpr double kMaxDifference = 0.012;  // largest DiscProfile::difference_from_plain of a plain disc
+  return explained > 0 && profile.difference_from_plain() < kMaxDifference;
 }
 
 bool ProfileTrial::looks_plain() const {

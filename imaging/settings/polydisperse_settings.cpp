@@ -11,7 +11,7 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr double kApart = 1.12, kFar = 2.5;                      // smallest and largest ratio of two sizes
+constexpr double kMinRatio = 1.12, kMaxRatio = 2.5;              // smallest and largest ratio of two sizes
 constexpr double kSmallestDiameter = 3, kLargestDiameter = 400;  // px
 constexpr double kGood = 0.8;  // smallest score of a disc whose size is used
 
@@ -87,7 +87,7 @@ Mix settle(const cv::Mat& grey, const LocatorOptions& given, bool bright, double
 bool apart(const std::vector<double>& diameters, double other) {
   return std::all_of(diameters.begin(), diameters.end(), [&](double d) {
     const double ratio = std::max(d / other, other / d);
-    return ratio > kApart && ratio < kFar;
+    return ratio > kMinRatio && ratio < kMaxRatio;
   });
 }
 
@@ -95,21 +95,21 @@ bool apart(const std::vector<double>& diameters, double other) {
 
 std::optional<FoundSettings> find_polydisperse(const cv::Mat& grey, const LocatorOptions& given,
                                                const std::vector<Hypothesis>& all, const FoundSettings& one) {
-  constexpr std::size_t kMost = 3, kFew = 3;
-  constexpr double kShare = 0.02;
+  constexpr std::size_t kMaxSizes = 3, kMinDiscs = 3;
+  constexpr double kMinShareOfBeads = 0.02;
   constexpr double kBetter = 1.02, kWellExplained = 0.9;
   Mix known = try_sizes(grey, given, one.bright, one.contrast, {one.diameter_px});
   if (one.method == kProfileRefiner.word)
     known.explained =
         std::max(known.explained, try_profile(grey, given, {one.bright, one.diameter_px}).explained);
-  while (known.diameters.size() < kMost) {
+  while (known.diameters.size() < kMaxSizes) {
     // Candidates for a further size.
     std::vector<double> candidates;
     for (const Hypothesis& h : all)
       if (h.bright == one.bright) candidates.push_back(h.diameter_px);
-    if (known.of_wrong_radius.size() >= kFew) candidates.push_back(upper_median(known.of_wrong_radius));
+    if (known.of_wrong_radius.size() >= kMinDiscs) candidates.push_back(upper_median(known.of_wrong_radius));
     // Fixed ratios, because the rims of two sizes may vote more sharply for a third one.
-    if (static_cast<double>(known.left_out) > kShare * static_cast<double>(known.beads))
+    if (static_cast<double>(known.left_out) > kMinShareOfBeads * static_cast<double>(known.beads))
       for (const double ratio : {0.5, 0.62, 0.76, 1.32, 1.6, 2.0})
         candidates.push_back(ratio * one.diameter_px);
     // Best candidate that explains clearly more.
@@ -119,7 +119,8 @@ std::optional<FoundSettings> find_polydisperse(const cv::Mat& grey, const Locato
       std::vector<double> more = known.diameters;
       more.push_back(d);
       Mix mix = settle(grey, given, one.bright, one.contrast, more);
-      if (mix.least_share < kShare || mix.score < kWellExplained || mix.explained < kBetter * known.explained)
+      if (mix.least_share < kMinShareOfBeads || mix.score < kWellExplained ||
+          mix.explained < kBetter * known.explained)
         continue;
       if (!better || mix.explained > better->explained) better = std::move(mix);
     }

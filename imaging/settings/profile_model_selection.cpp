@@ -26,9 +26,10 @@ class ProfileModelSearch {
   /// Tries each hypothesis, extended to its rim. A profile has more freedom than a plain disc, so it must be
   /// clearly better than the profile at the size of the plain discs.
   void try_all(const std::vector<Hypothesis>& all, double lattice, int threads) {
-    constexpr double kClearly = 1.25, kNear = 0.15;
-    if (best_trial_.overlaps || std::abs(best_.diameter_px - lattice) < kNear * lattice) try_as_plain(best_);
-    double to_beat = kClearly * best_trial_.explained;
+    constexpr double kMinAdvantage = 1.25, kLatticeShare = 0.15;
+    if (best_trial_.overlaps || std::abs(best_.diameter_px - lattice) < kLatticeShare * lattice)
+      try_as_plain(best_);
+    double to_beat = kMinAdvantage * best_trial_.explained;
     std::vector<Extended> extended(all.size());
     in_parallel(all.size(), threads, [&](std::size_t k) { extended[k] = extended_to_rim(all[k]); });
     for (auto& [h, trial, steps] : extended) {

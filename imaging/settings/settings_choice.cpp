@@ -95,11 +95,11 @@ TriedSettings try_one(const ExaminedRegion& region, const LocatorOptions& given,
   return tried;
 }
 
-constexpr double kLeastShare = 5;  // nats a disc: odds of 150 that it is one
-constexpr double kPart = 0.5;      // least evidence, in that of what is not round
+constexpr double kMinShare = 5;  // nats a disc: odds of 150 that it is one
+constexpr double kPart = 0.5;    // least evidence, in that of what is not round
 
 bool explains(const TriedSettings& tried) {
-  return tried.evidence > 0 && tried.evidence >= kLeastShare * static_cast<double>(tried.beads);
+  return tried.evidence > 0 && tried.evidence >= kMinShare * static_cast<double>(tried.beads);
 }
 
 bool less(const TriedSettings& a, const TriedSettings& b) {
@@ -110,7 +110,7 @@ bool less(const TriedSettings& a, const TriedSettings& b) {
 SettingsChoice refuse(std::vector<TriedSettings> tried) {
   for (TriedSettings& t : tried)
     if (!explains(t))
-      t.not_chosen = fmt::format("less than {:g} nats a bead", kLeastShare);
+      t.not_chosen = fmt::format("less than {:g} nats a bead", kMinShare);
     else if (is_round(t))
       t.not_chosen = fmt::format("less than {:g} of the evidence of what is not round", kPart);
   const auto others = std::stable_partition(tried.begin(), tried.end(),
@@ -124,16 +124,16 @@ SettingsChoice refuse(std::vector<TriedSettings> tried) {
 }  // namespace
 
 std::string roundness_in_words(const TriedSettings& tried) {
-  return tried.rim_variation > kMostRimVariation
+  return tried.rim_variation > kMaxRimVariation
              ? fmt::format(
                    "levels at the rims vary by {:.2f} with the direction, those of beads by at most {:g}",
-                   tried.rim_variation, kMostRimVariation)
+                   tried.rim_variation, kMaxRimVariation)
              : fmt::format("rims deviate from circles by {:.3f} radii, those of beads by at most {:g}",
-                           tried.rim_shift, kMostRimShift);
+                           tried.rim_shift, kMaxRimShift);
 }
 
 bool is_round(const TriedSettings& tried) {
-  return tried.rim_variation <= kMostRimVariation && tried.rim_shift <= kMostRimShift;
+  return tried.rim_variation <= kMaxRimVariation && tried.rim_shift <= kMaxRimShift;
 }
 
 const TriedSettings* not_round(const SettingsChoice& choice) {
@@ -143,7 +143,7 @@ const TriedSettings* not_round(const SettingsChoice& choice) {
 }
 
 LocatorOptions completed(const FoundSettings& settings, LocatorOptions given) {
-  given.judge.drop_unlike = given.diameter_px <= 0 && settings.other_diameters_px.empty();
+  given.judge.drop_outliers = given.diameter_px <= 0 && settings.other_diameters_px.empty();
   given.diameter_px = settings.diameter_px;
   given.preprocess.bright = settings.bright;
   if (given.other_diameters_px.empty()) given.other_diameters_px = settings.other_diameters_px;
@@ -192,8 +192,9 @@ SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
         reason = is_overlapping(*best) ? "a further layer gains less than three discs"
                                        : "a further size gains less than three discs";
     } else if (clearly * first->evidence > best->evidence && !finds_more_of_the_same(*best, *first)) {
-      reason = fmt::format("less than {:g} times the evidence of the preferred ones{}", clearly,
-                           clearly > kClearly ? ", for the gaps of a crystal are as alike as its discs" : "");
+      reason =
+          fmt::format("less than {:g} times the evidence of the preferred ones{}", clearly,
+                      clearly > kMinAdvantage ? ", for the gaps of a crystal are as alike as its discs" : "");
     } else if (area_of(*first) > kTimesArea * area_of(*best)) {
       reason = "less than half of the area of the preferred ones";
     }

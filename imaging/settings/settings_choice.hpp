@@ -11,7 +11,7 @@
 namespace twincell::imaging {
 
 /// Ratio of evidence at which other settings replace the preferred ones.
-inline constexpr double kClearly = 1.25;
+inline constexpr double kMinAdvantage = 1.25;
 /// The same in a crystal, whose gaps are as alike as its discs.
 inline constexpr double kClearlyInCrystal = 1.6;
 
@@ -19,11 +19,11 @@ inline constexpr double kClearlyInCrystal = 1.6;
 struct ExaminedRegion {
   cv::Mat picture;
   double neighbour_radius_px = 0;  ///< of picture_evidence: the same for all settings that are compared
-  double clearly = kClearly;       ///< of choose()
+  double clearly = kMinAdvantage;  ///< of choose()
 };
 
 /// Whether the objects located with settings may be discs: rim_variation and rim_shift are at most
-/// kMostRimVariation and kMostRimShift.
+/// kMaxRimVariation and kMaxRimShift.
 bool is_round(const TriedSettings& tried);
 
 /// Why they are not discs: the measure that is above its limit, and the limit.
@@ -55,7 +55,7 @@ std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const Loca
 /// \param clearly the factor 1.25
 /// \returns none chosen if the largest evidence of round discs is below 5 nats a disc, or below half of that
 ///   of what is not round
-SettingsChoice choose(std::vector<TriedSettings> tried, double clearly = kClearly);
+SettingsChoice choose(std::vector<TriedSettings> tried, double clearly = kMinAdvantage);
 
 /// Chooses, then fits the region with the chosen settings in full: a fit that was cut short may hold discs
 /// that it drops in the end. If the evidence falls by more than a tenth, chooses again.

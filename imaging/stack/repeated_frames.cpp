@@ -40,19 +40,19 @@ void RepeatedFrames::add(const cv::Mat& frame) {
 }
 
 std::vector<std::uint8_t> RepeatedFrames::repeats() const {
-  constexpr std::size_t kLongest = 6;
-  constexpr double kUsual = 0.5;
+  constexpr std::size_t kMaxRun = 6;  // equal frames
+  constexpr double kMinChange = 0.5;  // beside a run, fraction of the median change
   const std::size_t n = hashes_.size();
   std::vector<double> moved;
   for (std::size_t f = 1; f < n; ++f)
     if (hashes_[f] != hashes_[f - 1]) moved.push_back(changes_[f]);
   if (moved.empty() || moved.size() + 1 == n) return {};
-  const double least = kUsual * upper_median(std::move(moved));
+  const double least = kMinChange * upper_median(std::move(moved));
   std::vector<std::uint8_t> repeats(n, 0);
   bool certain = false;
   for (std::size_t first = 0, last = 0; first < n; first = ++last) {
     while (last + 1 < n && hashes_[last + 1] == hashes_[first]) ++last;
-    if (last == first || last - first + 1 > kLongest) continue;
+    if (last == first || last - first + 1 > kMaxRun) continue;
     std::fill(repeats.begin() + static_cast<std::ptrdiff_t>(first) + 1,
               repeats.begin() + static_cast<std::ptrdiff_t>(last) + 1, std::uint8_t{1});
     certain = certain || (first > 0 && last + 1 < n && hashes_[first - 1] != hashes_[last + 1] &&

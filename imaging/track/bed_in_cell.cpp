@@ -18,7 +18,7 @@ BedInCell::BedInCell(TrajectorySink& writer, const TrajectoryInfo& info, const C
 }
 
 void BedInCell::append(const Frame& frame) {
-  constexpr std::size_t kFewest = 5;
+  constexpr std::size_t kMinBeads = 5;
   double left = HUGE_VAL, right = -HUGE_VAL, low = HUGE_VAL;
   std::size_t n = 0;
   for (std::size_t i = 0; i < frame.position.size(); ++i) {
@@ -30,7 +30,7 @@ void BedInCell::append(const Frame& frame) {
     low = std::min(low, frame.position[i].z() - radius);
     ++n;
   }
-  if (n >= kFewest) {
+  if (n >= kMinBeads) {
     beads_.push_back(static_cast<double>(n));
     left_.push_back(left);
     right_.push_back(width_ - right);
@@ -40,36 +40,39 @@ void BedInCell::append(const Frame& frame) {
 }
 
 std::vector<std::string> BedInCell::doubts() const {
-  constexpr double kGap = 0.35, kRests = 0.05, kLayers = 2;
-  constexpr std::size_t kFewest = 10;  // frames
+  constexpr double kMaxGap = 0.35;        // bead diameters
+  constexpr double kRestQuantile = 0.05;  // of the gaps above the plate: the bed rests on it
+  constexpr double kMinLayers = 2;
+  constexpr std::size_t kMinFrames = 10;
   std::vector<std::string> all;
-  if (left_.size() < kFewest) return all;
+  if (left_.size() < kMinFrames) return all;
   const auto side = [&](const char* wall, double gap) {
-    if (gap > kGap)
+    if (gap > kMaxGap)
       all.push_back(fmt::format(
           "the beads come no closer to the {} wall than {:.2f} bead diameters: the wall is elsewhere than "
           "cell.width and camera.origin_px state, or the picture does not show the beads beside it.",
           wall, gap));
-    else if (gap < -kGap)
+    else if (gap < -kMaxGap)
       all.push_back(
           fmt::format("the beads reach {:.2f} bead diameters into the {} wall: it is elsewhere than "
                       "cell.width and camera.origin_px state.",
                       -gap, wall));
   };
-  if (width_ > 0 && upper_median(beads_) >= kLayers * width_) {
+  if (width_ > 0 && upper_median(beads_) >= kMinLayers * width_) {
     side("left", upper_median(left_));
     side("right", upper_median(right_));
   }
-  if (below_.size() < kFewest) return all;
+  if (below_.size() < kMinFrames) return all;
   std::vector<double> gaps = below_;
-  const auto at = gaps.begin() + static_cast<std::ptrdiff_t>(kRests * static_cast<double>(gaps.size()));
+  const auto at =
+      gaps.begin() + static_cast<std::ptrdiff_t>(kRestQuantile * static_cast<double>(gaps.size()));
   std::nth_element(gaps.begin(), at, gaps.end());
-  if (*at > kGap)
+  if (*at > kMaxGap)
     all.push_back(
         fmt::format("the lowest bead comes no closer to the plate than {:.2f} bead diameters: the plate is "
                     "elsewhere than camera.origin_px and the phases state.",
                     *at));
-  else if (*at < -kGap)
+  else if (*at < -kMaxGap)
     all.push_back(
         fmt::format("beads are up to {:.2f} bead diameters beneath the plate: it is elsewhere than "
                     "camera.origin_px and the phases state.",

@@ -18,9 +18,9 @@ class BedInCell : public TrajectorySink {
   /// \param writer, info outlive this object \param height_px of the picture: a plate below it is not checked
   BedInCell(TrajectorySink& writer, const TrajectoryInfo& info, const CellDescription& cell, int height_px);
   void append(const Frame& frame) override;
-  /// What contradicts the stated cell, in sentences: over the frames, the median gap at a side wall, and the
-  /// gap at the plate that 5 % of the frames fall below, each if it exceeds 0.35 bead diameters to either
-  /// side. Walls are checked for beds of two layers and more.
+  /// Observations that contradict the stated cell, as sentences: over the frames, the median gap at a side
+  /// wall, and the gap at the plate that 5 % of the frames fall below, each if it exceeds 0.35 bead diameters
+  /// to either side. Walls are checked for beds of two layers and more.
   [[nodiscard]] std::vector<std::string> doubts() const;
 
  private:

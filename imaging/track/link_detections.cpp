@@ -147,9 +147,9 @@ std::vector<std::int64_t> LinkedDetections::broken_tracers() const {
 }
 
 std::string LinkedDetections::missing_beads() const {
-  constexpr double kConstant = 0.95;
+  constexpr double kMinRatio = 0.95;  // of the fewest to the most beads in a frame
   const auto [fewest, most] = fewest_and_most(frames);
-  if (static_cast<double>(fewest) >= kConstant * static_cast<double>(most)) return {};
+  if (static_cast<double>(fewest) >= kMinRatio * static_cast<double>(most)) return {};
   return fmt::format(
       "the frames hold {} to {} beads: beads leave the picture, or are not found in every frame; N_l, the "
       "results and a twin count only those that are seen",
@@ -157,9 +157,9 @@ std::string LinkedDetections::missing_beads() const {
 }
 
 std::string LinkedDetections::surplus_tracks() const {
-  constexpr double kUsual = 1.2;
+  constexpr double kMaxTracksPerBead = 1.2;
   const std::size_t most = fewest_and_most(frames).second;
-  if (static_cast<double>(n_tracks) <= kUsual * static_cast<double>(most)) return {};
+  if (static_cast<double>(n_tracks) <= kMaxTracksPerBead * static_cast<double>(most)) return {};
   return fmt::format(
       "there are {} tracks, but at most {} beads in a frame: tracks are broken, beads enter and leave, or "
       "other objects, such as digits, are taken for beads (twincell locate --overlay shows them)",
@@ -167,28 +167,30 @@ std::string LinkedDetections::surplus_tracks() const {
 }
 
 std::string LinkedDetections::still_discs() const {
-  constexpr std::int64_t kFewestFrames = 20;
-  constexpr double kStill = 0.01, kMoving = 0.1, kFew = 0.1;
-  constexpr std::size_t kMostNamed = 5;
+  constexpr std::int64_t kMinFrames = 20;
+  constexpr double kMaxStillScatter = 0.01, kMinMovingScatter = 0.1;  // bead diameters
+  constexpr double kMaxStillShare = 0.1;                              // of the tracks
+  constexpr std::size_t kMaxNamed = 5;
   std::vector<double> moved;
   std::vector<const TrackSummary*> still;
   for (const TrackSummary& t : tracks) {
-    if (t.radius_px <= 0 || t.seen < kFewestFrames || 2 * t.seen < static_cast<std::int64_t>(frames.size()))
+    if (t.radius_px <= 0 || t.seen < kMinFrames || 2 * t.seen < static_cast<std::int64_t>(frames.size()))
       continue;
     moved.push_back(t.scatter_px() / (2 * t.radius_px));
-    if (moved.back() < kStill) still.push_back(&t);
+    if (moved.back() < kMaxStillScatter) still.push_back(&t);
   }
-  if (still.empty() || static_cast<double>(still.size()) > kFew * static_cast<double>(moved.size()) ||
-      upper_median(moved) < kMoving)
+  if (still.empty() ||
+      static_cast<double>(still.size()) > kMaxStillShare * static_cast<double>(moved.size()) ||
+      upper_median(moved) < kMinMovingScatter)
     return {};
   std::string places;
-  for (std::size_t i = 0; i < std::min(still.size(), kMostNamed); ++i)
+  for (std::size_t i = 0; i < std::min(still.size(), kMaxNamed); ++i)
     places += fmt::format("{}({:.1f}, {:.1f})", i == 0 ? "" : ", ", still[i]->x_px, still[i]->y_px);
   return fmt::format(
       "{} in a bed that moves, at x, y = {}{} px: a bubble, dirt or a letter, which counts as a bead here; "
       "leave the place out with --mask or --roi",
       still.size() == 1 ? "one disc stands still" : fmt::format("{} discs stand still", still.size()), places,
-      still.size() > kMostNamed ? ", ..." : "");
+      still.size() > kMaxNamed ? ", ..." : "");
 }
 
 namespace {

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "core/constants.hpp"
-#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
+#include "core/plural.hpp"
 #include "imaging/track/inside_cell.hpp"
 #include "trajectory/spacing.hpp"
 
@@ -68,18 +68,19 @@ class Columns {
 
 /// The number of each row's frame. \throws InputError for numbers that count no frames
 std::vector<std::int64_t> frame_numbers(const Columns& columns) {
-  constexpr double kMostFrames = 1e7;
+  constexpr double kMaxFrames = 1e7;
   std::vector<std::int64_t> numbers;
   const std::vector<double>& frames = columns.at("frame");
   const double first = *std::ranges::min_element(frames);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (!(frames[i] >= 0) || frames[i] != std::floor(frames[i]))
       columns.refuse(i, "frame",
-                     fmt::format("{:g} is no number of a frame, which is whole and at least 0.", frames[i]));
-    if (!(frames[i] - first < kMostFrames))
+                     fmt::format("{:g} is not a valid frame number; it must be a whole number of at least 0.",
+                                 frames[i]));
+    if (!(frames[i] - first < kMaxFrames))
       columns.refuse(
           i, "frame",
-          fmt::format("{:g} is more than {:g} frames after the first, {:g}.", frames[i], kMostFrames, first));
+          fmt::format("{:g} is more than {:g} frames after the first, {:g}.", frames[i], kMaxFrames, first));
     numbers.push_back(static_cast<std::int64_t>(frames[i]));
   }
   return numbers;
@@ -93,7 +94,7 @@ double median_diameter(const Columns& columns) {
   for (std::size_t i = 0; i < sizes.size(); ++i)
     if (!(sizes[i] > 0 && sizes[i] < 1e6))
       columns.refuse(i, radius != nullptr ? "radius" : "diameter",
-                     fmt::format("{:g} is no size of a bead.", sizes[i]));
+                     fmt::format("{:g} is not a valid size of a bead.", sizes[i]));
   return (radius != nullptr ? 2 : 1) * upper_median(sizes);
 }
 
@@ -106,16 +107,131 @@ std::vector<Vec3> centres_of(const std::vector<TrackedBead>& beads) {
 
 /// Says that the nearest neighbours of a frame are much closer than discs of one diameter can be.
 std::string doubt_of_spacing(const std::vector<TrackedBead>& beads, double diameter_px) {
-  constexpr std::size_t kFewest = 5;
-  constexpr double kClosest = 0.7;
-  if (beads.size() < kFewest) return {};
+  constexpr std::size_t kMinBeads = 5;
+  constexpr double kMinSpacing = 0.7;  // bead diameters
+  if (beads.size() < kMinBeads) return {};
   const double spacing = median_spacing(centres_of(beads)) / diameter_px;
-  if (spacing >= kClosest) return {};
+  if (spacing >= kMinSpacing) return {};
   return fmt::format(
       "the nearest neighbours in the first frame are {:.3g} bead diameters of {:.4g} px apart, so the "
       "diameter is wrong or the positions have another unit.",
       spacing, diameter_px);
 }
+
+/// The rows in the order of their frames. \throws InputError for a long gap: each number between the first
+/// and the last is a frame, of some bytes
+std::vector<std::size_t> rows_by_frame(const std::vector<std::int64_t>& numbers, const std::string& file) {
+  constexpr std::int64_t kMaxEmptyFrames = 100'000;  // in a row
+  std::vector<std::size_t> rows(numbers.size());
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  std::ranges::stable_sort(rows, {}, [&](std::size_t row) { return numbers[row]; });
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    if (const std::int64_t before = numbers[rows[i - 1]], here = numbers[rows[i]];
+        here - before > kMaxEmptyFrames)
+      throw InputError({.file = file, .key = "frame"},
+                       fmt::format("the {} frames between {} and {} contain no bead; check frame number {}.",
+                                   here - before - 1, before, here, here));
+  return rows;
+}
+
+/// Reads the bead of a row.
+class BeadRows {
+ public:
+  BeadRows(const Columns& columns, double diameter_px)
+      : columns_(columns),
+        x_(columns.at("x")),
+        y_(columns.at("y")),
+        radius_(columns.find("radius")),
+        diameter_(columns.find("diameter")),
+        sigma_x_(columns.find("sigma_x")),
+        sigma_y_(columns.find("sigma_y")),
+        tracer_(columns.find("tracer")),
+        diameter_px_(diameter_px) {}
+
+  [[nodiscard]] bool have_errors() const { return sigma_x_ != nullptr && sigma_y_ != nullptr; }
+
+  /// \throws InputError for numbers out of range
+  [[nodiscard]] TrackedBead bead(std::size_t row) const {
+    constexpr double kMaxCoordinate = 1e6;  // px
+    TrackedBead b{.x_px = x_[row], .y_px = y_[row]};
+    b.radius_px = radius_ != nullptr     ? (*radius_)[row]
+                  : diameter_ != nullptr ? (*diameter_)[row] / 2
+                                         : diameter_px_ / 2;
+    if (!(std::abs(b.x_px) < kMaxCoordinate))
+      columns_.refuse(row, "x", fmt::format("{:g} is not a valid position.", b.x_px));
+    if (!(std::abs(b.y_px) < kMaxCoordinate))
+      columns_.refuse(row, "y", fmt::format("{:g} is not a valid position.", b.y_px));
+    b.sigma_x_px = have_errors() ? (*sigma_x_)[row] : kNaN;
+    b.sigma_y_px = have_errors() ? (*sigma_y_)[row] : kNaN;
+    if (b.sigma_x_px < 0 || b.sigma_y_px < 0)
+      columns_.refuse(row, "sigma_x", "a standard error is negative.");
+    const double flag = tracer_ != nullptr ? (*tracer_)[row] : 0;
+    if (flag != 0 && flag != 1) columns_.refuse(row, "tracer", fmt::format("{:g} is neither 0 nor 1.", flag));
+    b.tracer = flag == 1;
+    return b;
+  }
+
+  /// \throws InputError for a bead outside the picture
+  void require_inside(const std::vector<std::size_t>& rows, int width, int height) const {
+    const auto is_outside = [&](std::size_t row) {
+      return !(x_[row] >= -0.5 && x_[row] < width - 0.5 && y_[row] >= -0.5 && y_[row] < height - 0.5);
+    };
+    if (const auto found = std::ranges::find_if(rows, is_outside); found != rows.end())
+      columns_.refuse(*found, x_[*found] >= -0.5 && x_[*found] < width - 0.5 ? "y" : "x",
+                      fmt::format("the bead at {:g}, {:g} is outside the picture of {} x {} px.", x_[*found],
+                                  y_[*found], width, height));
+  }
+
+ private:
+  const Columns& columns_;
+  const std::vector<double>&x_, &y_;
+  const std::vector<double>*radius_, *diameter_, *sigma_x_, *sigma_y_, *tracer_;  // null: no such column
+  double diameter_px_;                                                            // without sizes
+};
+
+/// Collects the beads of one frame after the other.
+class FrameCollector {
+ public:
+  explicit FrameCollector(LocatedTable& all) : all_(all), frame_(all.range.first) {}
+
+  /// \param frame not before that of the bead added last
+  void add(const TrackedBead& bead, std::int64_t frame) {
+    while (frame_ < frame) end_frame();
+    right_ = std::max(right_, bead.x_px + bead.radius_px);
+    bottom_ = std::max(bottom_, bead.y_px + bead.radius_px);
+    beads_.push_back(bead);
+  }
+
+  /// Ends the last frame, and sets the doubt of the spacing and the size of the picture that contains all
+  /// beads.
+  void finish() {
+    end_frame();
+    if (all_.spacing_doubt.empty() && doubled_ > 0)
+      all_.spacing_doubt = fmt::format(
+          "{}, the first in frame {}, {} closer than {:g} diameters to another bead: are beads listed twice?",
+          plural(doubled_, "bead"), doubled_frame_, doubled_ == 1 ? "lies" : "lie", kSameBead);
+    all_.width_px = static_cast<int>(std::ceil(right_ + 0.5));
+    all_.height_px = static_cast<int>(std::ceil(bottom_ + 0.5));
+  }
+
+ private:
+  void end_frame() {
+    if (frame_ == all_.range.first) all_.spacing_doubt = doubt_of_spacing(beads_, all_.diameter_px);
+    if (const std::size_t again = listed_again(centres_of(beads_), kSameBead * all_.diameter_px); again > 0) {
+      if (doubled_ == 0) doubled_frame_ = frame_;
+      doubled_ += again;
+    }
+    all_.frames.append(beads_);
+    beads_.clear();
+    ++frame_;
+  }
+
+  LocatedTable& all_;
+  std::int64_t frame_, doubled_frame_ = 0;
+  std::vector<TrackedBead> beads_;  // of the frame
+  double right_ = 0, bottom_ = 0;   // px
+  std::size_t doubled_ = 0;
+};
 
 }  // namespace
 
@@ -125,81 +241,25 @@ bool is_located_table(const std::filesystem::path& name) {
 
 LocatedTable read_located(const Table& table, const LocatedTableOptions& options,
                           const std::filesystem::path& folder) {
-  constexpr double kFarthest = 1e6;  // px
   const Columns columns(table, options.columns);
   const std::vector<std::int64_t> numbers = frame_numbers(columns);
-  const std::vector<double>&x = columns.at("x"), &y = columns.at("y");
-  const std::vector<double>*radius = columns.find("radius"), *diameter = columns.find("diameter"),
-        *sigma_x = columns.find("sigma_x"), *sigma_y = columns.find("sigma_y"),
-        *tracer = columns.find("tracer");
+  (void)columns.at("x"), (void)columns.at("y");  // their absence is reported before that of a size
   LocatedTable all{.frames = DetectionStore(folder)};
   all.diameter_px = options.diameter_px.value_or(median_diameter(columns));
   if (!(all.diameter_px > 0))
     throw InputError({.file = table.file, .key = {}},
                      "has no column radius or diameter; state the bead diameter (--diameter, px).");
-  all.has_errors = sigma_x != nullptr && sigma_y != nullptr;
+  const BeadRows beads(columns, all.diameter_px);
+  all.has_errors = beads.have_errors();
 
-  std::vector<std::size_t> rows(numbers.size());
-  std::iota(rows.begin(), rows.end(), std::size_t{0});
-  std::ranges::stable_sort(rows, {}, [&](std::size_t row) { return numbers[row]; });
-  // Each number between the first and the last is a frame, of some bytes.
-  constexpr std::int64_t kMostEmpty = 100'000;
-  for (std::size_t i = 1; i < rows.size(); ++i)
-    if (const std::int64_t before = numbers[rows[i - 1]], here = numbers[rows[i]]; here - before > kMostEmpty)
-      throw InputError({.file = table.file, .key = "frame"},
-                       fmt::format("no bead is in the {} frames between {} and {}; is the number {} right?",
-                                   here - before - 1, before, here, here));
+  const std::vector<std::size_t> rows = rows_by_frame(numbers, table.file);
   all.range.first = numbers[rows.front()];
-  std::vector<TrackedBead> beads;
-  double right = 0, bottom = 0;
-  std::int64_t frame = all.range.first, doubled_frame = 0;
-  std::size_t doubled = 0;
-  const auto end_frame = [&] {
-    if (frame == all.range.first) all.spacing_doubt = doubt_of_spacing(beads, all.diameter_px);
-    if (const std::size_t again = listed_again(centres_of(beads), kSameBead * all.diameter_px); again > 0) {
-      if (doubled == 0) doubled_frame = frame;
-      doubled += again;
-    }
-    all.frames.append(beads);
-    beads.clear();
-    ++frame;
-  };
-  for (const std::size_t row : rows) {
-    while (frame < numbers[row]) end_frame();
-    TrackedBead b{.x_px = x[row], .y_px = y[row]};
-    b.radius_px = radius != nullptr     ? (*radius)[row]
-                  : diameter != nullptr ? (*diameter)[row] / 2
-                                        : all.diameter_px / 2;
-    if (!(std::abs(b.x_px) < kFarthest))
-      columns.refuse(row, "x", fmt::format("{:g} is no position.", b.x_px));
-    if (!(std::abs(b.y_px) < kFarthest))
-      columns.refuse(row, "y", fmt::format("{:g} is no position.", b.y_px));
-    b.sigma_x_px = all.has_errors ? (*sigma_x)[row] : kNaN;
-    b.sigma_y_px = all.has_errors ? (*sigma_y)[row] : kNaN;
-    if (b.sigma_x_px < 0 || b.sigma_y_px < 0) columns.refuse(row, "sigma_x", "a standard error is negative.");
-    const double flag = tracer != nullptr ? (*tracer)[row] : 0;
-    if (flag != 0 && flag != 1) columns.refuse(row, "tracer", fmt::format("{:g} is neither 0 nor 1.", flag));
-    b.tracer = flag == 1;
-    right = std::max(right, b.x_px + b.radius_px);
-    bottom = std::max(bottom, b.y_px + b.radius_px);
-    beads.push_back(b);
-  }
-  end_frame();
-  if (all.spacing_doubt.empty() && doubled > 0)
-    all.spacing_doubt = fmt::format(
-        "{}, the first in frame {}, {} closer than {:g} diameters to another bead: are beads listed twice?",
-        counted(doubled, "bead"), doubled_frame, doubled == 1 ? "lies" : "lie", kSameBead);
-  all.width_px = static_cast<int>(std::ceil(right + 0.5));
-  all.height_px = static_cast<int>(std::ceil(bottom + 0.5));
+  FrameCollector collector(all);
+  for (const std::size_t row : rows) collector.add(beads.bead(row), numbers[row]);
+  collector.finish();
   if (options.picture) {
     const auto [width, height] = *options.picture;
-    const auto is_outside = [&](std::size_t row) {
-      return !(x[row] >= -0.5 && x[row] < width - 0.5 && y[row] >= -0.5 && y[row] < height - 0.5);
-    };
-    if (const auto found = std::ranges::find_if(rows, is_outside); found != rows.end())
-      columns.refuse(*found, x[*found] >= -0.5 && x[*found] < width - 0.5 ? "y" : "x",
-                     fmt::format("the bead at {:g}, {:g} is outside the picture of {} x {} px.", x[*found],
-                                 y[*found], width, height));
+    beads.require_inside(rows, width, height);
     all.width_px = width;
     all.height_px = height;
     all.has_picture = true;

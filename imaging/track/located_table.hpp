@@ -17,21 +17,20 @@ namespace twincell::imaging {
 
 /// The beads of a table, frame by frame.
 struct LocatedTable {
-  DetectionStore frames;  ///< of all numbers from the first to the last; those without a row have no bead
-  FrameRange range;       ///< their numbers
-  double diameter_px = 0;
+  DetectionStore frames;   ///< of all numbers from the first to the last; those without a row have no bead
+  FrameRange range;        ///< their numbers
+  double diameter_px = 0;  ///< of the beads, px
   int width_px = 0,
-      height_px = 0;         ///< of the picture; if not stated, of the smallest that contains all beads
-  bool has_picture = false;  ///< its size is stated
-  bool has_errors = false;   ///< the table has sigma_x and sigma_y
-  std::string
-      spacing_doubt;  ///< a sentence: beads are too close for their size, or twice there; otherwise empty
+      height_px = 0;          ///< of the picture; if not stated, of the smallest that contains all beads
+  bool has_picture = false;   ///< its size is stated
+  bool has_errors = false;    ///< the table has sigma_x and sigma_y
+  std::string spacing_doubt;  ///< a sentence: beads overlap or are listed twice; otherwise empty
 };
 
-/// What a user says about a table.
+/// A user's statements about a table.
 struct LocatedTableOptions {
   std::map<std::string, std::string> columns =
-      {};                                  ///< names of columns that are called otherwise, by quantity
+      {};                                  ///< column names that differ from the defaults, by quantity
   std::optional<double> diameter_px = {};  ///< of the beads; absent: the median of the table's sizes
   std::optional<std::array<int, 2>> picture =
       {};  ///< width and height of the frames, px; required by a cell with

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a user says about the beads of a stack and the part of it that is searched. `locate`, `track` and
+/// A user's statements about the beads of a stack and the part of it that is searched. `locate`, `track` and
 /// `match` have the same options.
 
 #include <memory>

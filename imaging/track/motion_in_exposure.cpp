@@ -37,12 +37,12 @@ void MotionInExposure::add(const Located& located) {
 }
 
 bool MotionInExposure::claimed(std::size_t frame) const {
-  constexpr double kShare = 0.5;
+  constexpr double kMinStep = 0.5;  // median step to the next frame, fraction of the path in the exposure
   const double path = std::hypot(paths_[frame][0], paths_[frame][1]);
   double step = 0;
   if (frame > 0) step = steps_[frame - 1];
   if (frame < steps_.size()) step = std::max(step, steps_[frame]);
-  return path > 0 && step >= kShare * path;
+  return path > 0 && step >= kMinStep * path;
 }
 
 std::size_t MotionInExposure::unproven() const {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Whether beads moved during an exposure: the blur of one frame, held against the motion between frames.
+/// Whether beads moved during an exposure: the blur of one frame, compared with the motion between frames.
 
 #include <array>
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace twincell::imaging {
 /// The fit of a frame gives a path (Located::path_px) from edges that are blurred more along one direction.
 /// An astigmatic lens or stretched pixels give the same. A path is claimed only if the beads move from this
 /// frame to the one before or after by at least half of it, because an exposure is no longer than the
-/// interval between frames. A single frame is no evidence. Memory: 24 bytes per frame.
+/// interval between frames. A single frame is not evidence. Memory: 24 bytes per frame.
 class MotionInExposure {
  public:
   /// Adds the next frame.

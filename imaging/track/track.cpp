@@ -12,8 +12,8 @@
 #include "imaging/cell/plate_row.hpp"
 #include "imaging/phase/trigger_list.hpp"
 #include "imaging/refine/paler_discs.hpp"
+#include "imaging/settings/check_scale.hpp"
 #include "imaging/settings/configure_locator.hpp"
-#include "imaging/settings/size_of_scale.hpp"
 #include "imaging/stack/repeated_frames.hpp"
 #include "imaging/track/inside_cell.hpp"
 #include "imaging/track/locate_stack.hpp"
@@ -35,9 +35,9 @@ struct Detections {
 };
 
 /// A stack that keeps the size of its frames, and the evidence for their phases, as they are read.
-class Witnessed : public FrameSource {
+class EvidenceCollectingSource : public FrameSource {
  public:
-  Witnessed(FrameSource& frames, bool bright, StageTimes* times)
+  EvidenceCollectingSource(FrameSource& frames, bool bright, StageTimes* times)
       : frames_(frames), bright_(bright), times_(times) {}
   bool next(cv::Mat& frame) override {
     Stage reading(times_, "reading", "frames");
@@ -71,11 +71,11 @@ class Witnessed : public FrameSource {
   RepeatedFrames repeated_;
 };
 
-Detections detect(FramesAhead& frames, const LocatorOptions& locator, const CellDescription& cell,
-                  const Region& region, const cv::Size& picture, int threads, Progress& progress,
-                  const std::filesystem::path& folder, StageTimes* times) {
+Detections detect(FramesAhead& frames, const CellDescription& cell, const TrackingOptions& options,
+                  const cv::Size& picture, Progress& progress, StageTimes* times) {
   Stage locating(times, "locating", "beads");
-  Detections all{.frames = DetectionStore(folder)};
+  const Region& region = options.region;
+  Detections all{.frames = DetectionStore(options.folder)};
   std::vector<TrackedBead> beads;
   std::size_t inside = 0;
   const InsideCell in_cell(cell, picture);
@@ -84,7 +84,7 @@ Detections detect(FramesAhead& frames, const LocatorOptions& locator, const Cell
       std::max<std::int64_t>(1, static_cast<std::int64_t>(frames.source().announced()) / kAspectFrames);
   RimAspect aspect;
   locate_stack(
-      frames, locator, threads,
+      frames, options.locator, options.threads,
       [&](std::int64_t frame, const cv::Mat& grey, const Located& found) {
         if (frame % stride == 0) aspect.add(grey, found.beads, found.path_px);
         all.wrong_radius += static_cast<std::size_t>(
@@ -121,17 +121,17 @@ Detections detect(FramesAhead& frames, const LocatorOptions& locator, const Cell
   return all;
 }
 
-/// The smallest of the diameters, which is the smallest distance of two beads.
-/// Looks for signals, and leaves the bar of the frames, which are all located, as it is.
-class OnlySignals : public Progress {
+/// Checks for cancellation and leaves the bar of the frames, which are all located, as it is.
+class CancellationOnlyProgress : public Progress {
  public:
-  explicit OnlySignals(Progress& frames) : frames_(frames) {}
+  explicit CancellationOnlyProgress(Progress& frames) : frames_(frames) {}
   void update(std::int64_t /*done*/, std::int64_t /*total*/) override { frames_.update(0, 0); }
 
  private:
   Progress& frames_;
 };
 
+/// The smallest of the diameters, which is the smallest distance of two beads.
 double smallest_diameter(const LocatorOptions& locator) {
   double smallest = locator.diameter_px;
   for (const double other : locator.other_diameters_px) smallest = std::min(smallest, other);
@@ -141,7 +141,7 @@ double smallest_diameter(const LocatorOptions& locator) {
 }  // namespace
 
 std::string TrackedStack::scale_doubt(const CellDescription& cell) const {
-  const std::string sizes = cell.pixels_per_sigma ? sizes_unlike(locator, *cell.pixels_per_sigma) : "";
+  const std::string sizes = cell.pixels_per_sigma ? sizes_that_differ(locator, *cell.pixels_per_sigma) : "";
   if (sizes.empty()) return {};
   return fmt::format("sigma is {:g} px (camera.pixels_per_sigma), but the beads are {} px wide: {:.3g} sigma",
                      *cell.pixels_per_sigma, sizes, smallest_diameter(locator) / *cell.pixels_per_sigma);
@@ -159,35 +159,41 @@ std::string TrackedStack::paler_doubt() const {
       left_out / static_cast<double>(frames.size()));
 }
 
-TrackedStack track_stack(FrameSource& stack, const LocatorOptions& given, LinkOptions link,
-                         const CellDescription& cell, int threads, Progress& progress,
-                         const PhaseSource& source, const std::filesystem::path& folder, const Region& region,
-                         StageTimes* times) {
+std::vector<std::string> TrackedStack::doubts(const CellDescription& cell) const {
+  std::vector<std::string> all;
+  for (const std::string& doubt : {phases.warning, missing_beads(), paler_doubt(), surplus_tracks(),
+                                   scale_doubt(cell), aspect_doubt(), still_discs()})
+    if (!doubt.empty()) all.push_back(doubt + ".");
+  return all;
+}
+
+TrackedStack track_stack(FrameSource& stack, const CellDescription& cell, const TrackingOptions& given,
+                         Progress& progress, StageTimes* times) {
   // An unreadable list of triggers is rejected before the work, not after it.
-  if (source.method == PhaseMethod::triggers)
-    (void)read_triggers(source.triggers, source.drive_hz, cell.phase_lock.frames_per_cycle);
-  Witnessed witnessed(stack, given.preprocess.bright, times);
-  RegionFrames seen(witnessed, region);
+  if (given.phases.method == PhaseMethod::triggers)
+    (void)read_triggers(given.phases.triggers, given.phases.drive_hz, cell.phase_lock.frames_per_cycle);
+  EvidenceCollectingSource watched(stack, given.locator.preprocess.bright, times);
+  RegionFrames seen(watched, given.region);
   FramesAhead frames(seen);
-  const LocatorOptions locator = [&] {
+  TrackingOptions options = given;
+  {
     const Stage configuring(times, "settings");
-    const LocatorOptions found = configure_locator(frames, given, threads).locator;
-    if (given.diameter_of_scale) require_size_of_scale(frames, given, found, threads);
-    return found;
-  }();
-  const Detections detected =
-      detect(frames, locator, cell, region, witnessed.size(), threads, progress, folder, times);
+    options.locator = configure_locator(frames, given.locator, given.threads).locator;
+    if (given.locator.diameter_of_scale)
+      check_bead_size(frames, given.locator, options.locator, given.threads);
+  }
+  const Detections detected = detect(frames, cell, options, watched.size(), progress, times);
   // If the frame cuts beads, others enter and leave.
+  LinkOptions& link = options.link;
   link.closed = cell.sides == Boundary::wall && !detected.cut_by_frame;
-  link.diameter_px = smallest_diameter(locator);
+  link.diameter_px = smallest_diameter(options.locator);
   Stage linking(times, "linking", "links");
-  OnlySignals signals(progress);
-  LinkedDetections linked =
-      link_detections(detected.frames, link, cell, source, folder, signals, witnessed.evidence());
+  CancellationOnlyProgress cancellation(progress);
+  LinkedDetections linked = link_detections(detected.frames, link, cell, options.phases, options.folder,
+                                            cancellation, watched.evidence());
   linking.count(static_cast<double>(linked.links.links));
-  TrackedStack tracked{std::move(linked),      locator,
-                       witnessed.size().width, witnessed.size().height,
-                       detected.outside_cell,  detected.wrong_radius,
+  TrackedStack tracked{std::move(linked),     options.locator,       watched.size().width,
+                       watched.size().height, detected.outside_cell, detected.wrong_radius,
                        detected.paler};
   tracked.aspect = detected.aspect;
   return tracked;

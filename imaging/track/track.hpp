@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/progress.hpp"
 #include "core/stage_times.hpp"
@@ -20,6 +21,17 @@
 
 namespace twincell::imaging {
 
+/// How the frames of a stack are located and linked.
+struct TrackingOptions {
+  LocatorOptions locator;  ///< settings left open are found from the first frames (configure_locator.hpp)
+  LinkOptions link = {};
+  PhaseSource phases = {};
+  Region region = {};  ///< part of the picture that is searched
+  int threads = 1;
+  /// Folder for the beads on disk, about 64 bytes per bead and frame; empty: the folder for temporary files.
+  std::filesystem::path folder = {};
+};
+
 /// A located and linked stack.
 struct TrackedStack : LinkedDetections {
   LocatorOptions locator;  ///< complete options with which the beads were located
@@ -28,9 +40,8 @@ struct TrackedStack : LinkedDetections {
   std::size_t wrong_radius = 0;  ///< candidates excluded as discs of another size
   std::size_t paler = 0;  ///< candidates in the cell excluded as discs of another darkness (paler_discs.hpp)
   FrameRange range = {};  ///< numbers of the frames, which become the steps of the trajectory
-  std::string spacing_doubt =
-      {};                  ///< of a table: beads are too close for their size, or twice there, a sentence
-  bool has_errors = true;  ///< the standard errors of the positions are known
+  std::string spacing_doubt = {};     ///< of a table: beads overlap or are listed twice, a sentence
+  bool has_errors = true;             ///< the standard errors of the positions are known
   std::optional<Aspect> aspect = {};  ///< height over width of the beads in a dozen frames of the stack
   /// Says that no bead is about one sigma wide (10 %); empty if one is, or the scale is unknown.
   [[nodiscard]] std::string scale_doubt(const CellDescription& cell) const;
@@ -39,24 +50,21 @@ struct TrackedStack : LinkedDetections {
   [[nodiscard]] std::string paler_doubt() const;
   /// Aspect::doubt of the stack.
   [[nodiscard]] std::string aspect_doubt() const { return aspect ? aspect->doubt() : ""; }
+  /// All doubts about the stack, phases, links and sizes, in sentences with their full stop.
+  [[nodiscard]] std::vector<std::string> doubts(const CellDescription& cell) const;
 };
 
 /// Locates the beads, determines the phases and links. The stack is read once.
-/// \param locator options; settings left open are found from the first frames (configure_locator.hpp)
 /// \param cell origin, scale and size: if all are known, detections more than half a bead outside the walls,
 ///     or below the plate where the drive is known, are counted and excluded; otherwise all are kept. Drive,
 ///     frames per cycle and scale give the linker the fall of a bead per frame interval
-/// \param folder folder for the beads on disk, about 64 bytes per bead and frame; empty: the folder for
-///     temporary files
-/// \param region part of the picture that is searched; positions remain those of the whole picture. Discs cut
-///     by the mask are left out. The plate is sought in the whole picture
+/// \param options of the region: positions remain those of the whole picture. Discs cut by the mask are left
+///     out. The plate is sought in the whole picture
 /// \param times receives the times of the stages "reading", "settings", "locating" (located beads) and
 ///     "linking" (links; with the estimate of the phases); null: not timed
 /// \throws InputError if a list of triggers does not have a line for each frame; ConfigError if all
 ///     detections lie outside the cell, and as check_lock and Region::check
-TrackedStack track_stack(FrameSource& frames, const LocatorOptions& locator, LinkOptions link,
-                         const CellDescription& cell, int threads, Progress& progress = Progress::none(),
-                         const PhaseSource& source = {}, const std::filesystem::path& folder = {},
-                         const Region& region = {}, StageTimes* times = nullptr);
+TrackedStack track_stack(FrameSource& frames, const CellDescription& cell, const TrackingOptions& options,
+                         Progress& progress = Progress::none(), StageTimes* times = nullptr);
 
 }  // namespace twincell::imaging

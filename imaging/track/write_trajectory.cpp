@@ -10,7 +10,7 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr std::size_t kMostNamed = 1000;  // largest number of dropped or doubled frames listed individually
+constexpr std::size_t kMaxNamed = 1000;  // largest number of dropped or doubled frames listed individually
 
 }  // namespace
 
@@ -62,14 +62,14 @@ std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, cons
     lock["doubled"] = phases.doubled;
     for (std::size_t f = 1; f < phases.frames.size(); ++f) {
       const double interval = phases.frames[f].interval;
-      if (interval > 1 && lock["dropped_before"].size() < kMostNamed) lock["dropped_before"].push_back(f);
-      if (interval == 0 && lock["doubled_frames"].size() < kMostNamed) lock["doubled_frames"].push_back(f);
+      if (interval > 1 && lock["dropped_before"].size() < kMaxNamed) lock["dropped_before"].push_back(f);
+      if (interval == 0 && lock["doubled_frames"].size() < kMaxNamed) lock["doubled_frames"].push_back(f);
     }
   }
   if (!phases.out_of_lock.empty()) {
     lock["out_of_lock"] = frames_in(phases.out_of_lock);
     for (const FrameStretch& s : phases.out_of_lock)
-      if (lock["out_of_lock_frames"].size() < kMostNamed)
+      if (lock["out_of_lock_frames"].size() < kMaxNamed)
         lock["out_of_lock_frames"].push_back({s.first, s.last});
   }
   if (phases.between > 0) lock["between_phases"] = phases.between;

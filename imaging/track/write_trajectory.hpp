@@ -21,6 +21,9 @@ struct TrackPlan {
   PixelFrame pixel_frame;
   std::vector<std::int64_t> slot_of_track;
 };
+/// Plans the trajectory of a tracked stack: its metadata, the map from px to sigma, and the slots of the
+/// tracks. Pure. \param diameter_px located diameter, px \param shortest fewest frames of a track that gets a
+/// slot
 TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell, double diameter_px,
                           int shortest);
 

@@ -12,6 +12,7 @@
 
 #include "core/error.hpp"
 #include "sim/event_driven/binary_collision.hpp"
+#include "sim/laws/cell_laws.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/run/simulation.hpp"
 #include "sim/scene/make_plan.hpp"
@@ -39,7 +40,7 @@ struct Bodies {
   [[nodiscard]] double m_eff() const { return wall ? mass : mass / 2; }
   [[nodiscard]] CollisionSetting setting(const Plan& plan) const {
     return {.dimension = plan.dimension,
-            .laws = wall ? &plan.wall_laws.at(0) : &plan.bead,
+            .laws = wall ? &plan.laws->walls.at(0) : &plan.laws->bead,
             .pair = {m_eff(), wall ? radius : radius / 2, 1 / m_eff() + turn()},
             .reach = wall ? radius : 2 * radius,
             .turn = turn(),
@@ -205,19 +206,20 @@ ImpactErrors impact_errors(const std::vector<Impact>& impacts, const Scene& scen
 
 EqualImpacts equal_impacts(const std::vector<Impact>& impacts, const Scene& scene, const std::string& slow,
                            const std::string& fast, double share, int phases) {
-  constexpr double kFewest = 6.37, kMost = 1e5, kRung = 1.02;
+  constexpr double kMinStepsPerContact = 6.37, kMaxStepsPerContact = 1e5, kMaxRatio = 1.02;
   const std::vector<Outcome> exact = exact_outcomes(impacts, scene);
   const auto errors = [&](const StepSetting& s) { return impact_errors(impacts, exact, scene, s, phases); };
   // Errors decrease with n apart from scatter: n is doubled until it passes, then bisected by geometric
   // means.
   const auto fewest = [&](const std::string& integrator, const auto& passes) {
-    StepSetting setting{.integrator = integrator, .n = kFewest};
+    StepSetting setting{.integrator = integrator, .n = kMinStepsPerContact};
     while (!passes(errors(setting))) {
       setting.n *= 2;
-      if (setting.n > kMost) throw RunError(integrator + " does not reach the required accuracy.");
+      if (setting.n > kMaxStepsPerContact)
+        throw RunError(integrator + " does not reach the required accuracy.");
     }
     double low = setting.n / 2;
-    while (setting.n > kFewest && setting.n / low > kRung) {
+    while (setting.n > kMinStepsPerContact && setting.n / low > kMaxRatio) {
       StepSetting between = setting;
       between.n = std::sqrt(low * setting.n);
       passes(errors(between)) ? setting.n = between.n : low = between.n;
@@ -236,9 +238,9 @@ EqualImpacts equal_impacts(const std::vector<Impact>& impacts, const Scene& scen
 }
 
 std::vector<Impact> impacts_of_a_bed(double gamma, int count) {
-  constexpr double kSlowest = 0.01, kSteps = 20.37;
+  constexpr double kMinSpeed = 0.01, kSteps = 20.37;  // sqrt(g sigma); per contact
   // Steps between checks: less than half a contact, so that no contact is missed.
-  constexpr std::int64_t kLook = 8;
+  constexpr std::int64_t kStepsBetweenLooks = 8;
   Scene scene = read_scene_text(
       fmt::format("preset = \"fortini-huang-2015\"\n[beads]\ncount = 400\n[drive]\ngamma = {}\n", gamma),
       "bed of impacts");
@@ -256,7 +258,7 @@ std::vector<Impact> impacts_of_a_bed(double gamma, int count) {
   std::set<std::pair<std::int32_t, std::int32_t>> before;
   std::vector<Bead> beads;
   Vec3 plate_velocity = Vec3::Zero();
-  for (std::int64_t done = 0; done < plan.steps_per_period; done += kLook) {
+  for (std::int64_t done = 0; done < plan.steps_per_period; done += kStepsBetweenLooks) {
     std::set<std::pair<std::int32_t, std::int32_t>> now;
     for (const ContactMemory& c : kernel->contacts()) now.emplace(c.i, c.j);
     for (const auto& pair : now) {
@@ -275,12 +277,12 @@ std::vector<Impact> impacts_of_a_bed(double gamma, int count) {
         rim += j.radius * j.spin;
       }
       const Impact impact{pair.second < 0, -u.dot(n), -n.z() * u.x() + n.x() * u.z(), rim};
-      if (impact.v_n > 0.1 * kSlowest && impact.speed() > kSlowest) all.push_back(impact);
+      if (impact.v_n > 0.1 * kMinSpeed && impact.speed() > kMinSpeed) all.push_back(impact);
     }
     before = std::move(now);
     beads = system.beads;
     plate_velocity = system.plate_velocity_in_space();
-    kernel->advance(system, kLook);
+    kernel->advance(system, kStepsBetweenLooks);
   }
   if (all.empty()) throw RunError("the bed has no impacts.");
   // The fixed seed gives the same impacts in every call.

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "sim/accuracy/phase_spread.hpp"
+#include "sim/accuracy/step_setting.hpp"
 #include "sim/event_driven/collision_with_memory.hpp"
 #include "sim/scene/scene.hpp"
-#include "sim/scene/step_setting.hpp"
 
 namespace twincell::sim {
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/laws/cell_laws.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/scene/make_plan.hpp"
 
@@ -79,7 +80,8 @@ std::vector<double> restitutions(const Scene& space, double dt, double v, int ph
 
 std::optional<ImpactErrors> friction_error(const Scene& space, const Plan& plan, double speed) {
   constexpr int kOblique = 16;  // entry phases per angle
-  if (!plan.rotation || !(remembers(plan.bead) || integrable_alone(plan.bead))) return std::nullopt;
+  if (!plan.rotation || !(remembers(plan.laws->bead) || integrable_alone(plan.laws->bead)))
+    return std::nullopt;
   std::vector<Impact> impacts;
   for (const double degrees : {15.0, 30.0, 45.0, 60.0, 75.0})
     impacts.push_back(Impact::at(degrees, false, speed));

@@ -12,6 +12,7 @@
 #include "core/cpu_clock.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
+#include "sim/laws/cell_laws.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/run/simulation.hpp"
 #include "sim/scene/make_plan.hpp"
@@ -123,7 +124,7 @@ ImpactSpread pair_impacts(const StepSetting& setting, int phases) {
     e.push_back(((i.vx - j.vx) * nx + (i.vz - j.vz) * nz) / v);
     sticking.push_back(((i.vz - j.vz) * nx - (i.vx - j.vx) * nz - run.scene.radius * (i.spin + j.spin)) / -v);
   }
-  return compare(e, sticking, run.plan.bead, run.scene.mass / 2, 2 * run.mobility());
+  return compare(e, sticking, run.plan.laws->bead, run.scene.mass / 2, 2 * run.mobility());
 }
 
 ImpactSpread wall_impacts(const StepSetting& setting, int phases) {
@@ -137,14 +138,14 @@ ImpactSpread wall_impacts(const StepSetting& setting, int phases) {
     e.push_back(b.vz / v);
     sticking.push_back((b.vx + run.scene.radius * b.spin) / v);
   }
-  return compare(e, sticking, run.plan.wall_laws.at(0), run.scene.mass, run.mobility());
+  return compare(e, sticking, run.plan.laws->walls.at(0), run.scene.mass, run.mobility());
 }
 
 constexpr double kSettling = 2250;  ///< contact times
 
 /// Contact time of two beads.
 double contact_time(const Plan& plan) {
-  return std::get<LinearSpringDashpot>(plan.bead.normal)
+  return std::get<LinearSpringDashpot>(plan.laws->bead.normal)
       .oscillator({.m_eff = 0.5, .r_eff = 0, .inv_m_t = 0})
       .contact_time();
 }
@@ -205,10 +206,10 @@ struct TimedSetting {
   /// Seconds per simulated time.
   double measure() {
     // Short windows are repeated, because of the resolution of the clock.
-    constexpr double kLeastSteps = 4000;
+    constexpr double kMinSteps = 4000;
     const std::int64_t period = run.system.steps_per_period;
     const auto steps = static_cast<std::int64_t>(std::ceil(kWindow * static_cast<double>(period)));
-    const auto repeats = static_cast<int>(std::ceil(kLeastSteps / static_cast<double>(kWindows * steps)));
+    const auto repeats = static_cast<int>(std::ceil(kMinSteps / static_cast<double>(kWindows * steps)));
     double seconds = 0;
     for (int r = 0; r < repeats; ++r)
       for (int w = 0; w < kWindows; ++w) {

@@ -9,8 +9,8 @@
 
 #include "core/progress.hpp"
 #include "sim/accuracy/impacts.hpp"
+#include "sim/accuracy/step_setting.hpp"
 #include "sim/scene/scene.hpp"
-#include "sim/scene/step_setting.hpp"
 
 namespace twincell::sim {
 
@@ -33,6 +33,8 @@ struct BedErrors {
   double floor_force = 0;     ///< of the same bed, largest |F/(N m g) - 1| over ten contact times
   double overlap = 0;         ///< largest |delta k_n/(i m g) - 1| in a column of five; i: beads carried
 };
+/// Lets a crystal of 40 beads and a column of five come to rest with time steps and compares them with
+/// statics. \throws ConfigError for an integrator or n that a scene refuses
 BedErrors bed_errors(const StepSetting& setting);
 
 /// A gas of the second paper.
@@ -56,6 +58,8 @@ struct GasTemperature {
   /// Processor time after which the statistical error is the fraction `relative` of the value.
   [[nodiscard]] double seconds_to(double relative) const;
 };
+/// Simulates the gas for `periods` periods, at least ten, after the discarded ones.
+/// \throws ConfigError for a setting, system or w that a scene refuses; RunError if the run fails
 GasTemperature gas_temperature(const StepSetting& setting, const GasCase& gas, int periods,
                                Progress& progress = Progress::none());
 

@@ -2,10 +2,10 @@
 /// \file
 /// Forces of a binary collision (binary_collision.hpp) within one regime of friction, at one instant or at
 /// several instants in the lanes of a SIMD vector. The code is written once for every number type of
-/// laws/real.hpp.
+/// laws/scalar_arithmetic.hpp.
 
 #include "sim/laws/concepts.hpp"
-#include "sim/laws/isolated.hpp"
+#include "sim/laws/separate_integration.hpp"
 
 namespace twincell::sim {
 

@@ -10,7 +10,8 @@
 
 namespace twincell::sim {
 
-/// The values at all eight stages, in as many SIMD vectors as they need; a number type of laws/real.hpp.
+/// The values at all eight stages, in as many SIMD vectors as they need; a number type of
+/// laws/scalar_arithmetic.hpp.
 template <class Lanes>
 struct Octet {
   using Part = typename Lanes::V;
@@ -98,14 +99,14 @@ struct CollocationOf {
   using Forces = CollisionForces<V, N, T, D>;
   static constexpr int kTurn = D == 2 ? 1 : 3;
   static constexpr int kSlopes = D + (T::kActs ? kTurn : 0);
-  static constexpr int kMostPasses = 40;
+  static constexpr int kMaxPasses = 40;
   // From pass kPatience on, the iteration stops if a pass does not reduce the change by kProgress: outside
   // the range of its regime, a force may have no smooth solution.
   static constexpr int kPatience = 3;
   static constexpr double kProgress = 0.4;
   // Smallest ratio of successive changes that the error estimate assumes: after a good initial guess the
   // first ratios are unreliable.
-  static constexpr double kBest = 0.01;
+  static constexpr double kMinContraction = 0.01;
 
   /// Applies one linear map to each of K rows of stage values.
   template <int K>
@@ -170,7 +171,7 @@ struct CollocationOf {
     Forces f;
     // Iteration: evaluate the forces at all stages, integrate them, repeat until the velocities converge.
     double before = 0;
-    for (int pass = 0; pass < kMostPasses; ++pass) {
+    for (int pass = 0; pass < kMaxPasses; ++pass) {
       pass == 0 ? f.look(reach, along_wall, r) : f.look_again(reach, along_wall, r);
       f.approach(c_n, u, u + D);
       f.friction(c_t, a.pressed, a.slides);
@@ -206,10 +207,10 @@ struct CollocationOf {
       for (int k = 0; k < kSlopes; ++k) u[k] = next[k];
       // Convergence: the ratio of the last two changes predicts the next change.
       const double most = change.largest();
-      m.change = pass > 0 && most < before ? most * std::max(most / before, kBest) : most;
+      m.change = pass > 0 && most < before ? most * std::max(most / before, kMinContraction) : most;
       const bool hopeless = pass >= kPatience && !(most < kProgress * before);
       before = most;
-      if (m.change <= a.enough || hopeless || pass + 1 == kMostPasses) {
+      if (m.change <= a.enough || hopeless || pass + 1 == kMaxPasses) {
         for (int k = 0; k < D; ++k) fma(now, n0[k], slope[k]).store(m.slopes[k]);
         f.overlap.store(m.overlap);
         m.deepest = f.overlap.largest();

@@ -3,27 +3,11 @@
 /// Evaluation of one contact, from relative motion to force. The all-pairs oracle, the scalar kernel and the
 /// SIMD kernels share this code, for 2D and 3D, for bead-bead and bead-wall contacts.
 
+#include "sim/contact/contact_constants.hpp"
 #include "sim/contact/velocity.hpp"
 #include "sim/laws/axes.hpp"
 
 namespace twincell::sim {
-
-/// Number of components of the spin and of the tangent plane.
-template <int D>
-inline constexpr int kTurns = D == 2 ? 1 : 3;
-
-/// Indices of the constants of a contact. There is one set per kind of pair: the geometry first, then the
-/// constants of its laws in the order of the axes.
-namespace constant {
-inline constexpr int kReach = 0;            ///< R_i + R_j; R at a wall
-inline constexpr int kEdge = 1;             ///< kReach^2, slightly enlarged; closer pairs are evaluated
-inline constexpr int kInvReach = 2;         ///< 1/kReach
-inline constexpr int kInvReachSquared = 3;  ///< 1/kReach^2
-inline constexpr int kInvRadiusI = 4;       ///< 1/R_i, for rolling
-inline constexpr int kInvRadiusJ = 5;       ///< 1/R_j; 0 at a wall
-inline constexpr int kInvMass = 6;          ///< 1/m_eff
-inline constexpr int kLaws = 7;
-}  // namespace constant
 
 /// Offsets of the constants of each law of a set.
 template <class Laws>

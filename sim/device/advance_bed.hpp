@@ -149,14 +149,14 @@ class BedKernel {
   [[nodiscard]] bool is_list_expired(std::int64_t step, bool moved) {
     if (bed_.rebuild_every > 0 && (bed_.step + step) % bed_.rebuild_every == 0) return true;
     if (!moved) return false;
-    constexpr std::int32_t kMost = 32;
-    const std::int32_t some = bed_.beads < kMost ? bed_.beads : kMost;
+    constexpr std::int32_t kMaxSample = 32;  // beads
+    const std::int32_t sample = bed_.beads < kMaxSample ? bed_.beads : kMaxSample;
     double sum[D] = {};
-    for (std::int32_t k = 0; k < some; ++k) {
-      const std::int32_t b = k * bed_.beads / some;
+    for (std::int32_t k = 0; k < sample; ++k) {
+      const std::int32_t b = k * bed_.beads / sample;
       for (int c = 0; c < D; ++c) sum[c] += place_of(b)[c] - bed_.listed_at[D * b + c];
     }
-    for (int c = 0; c < D; ++c) carried_[c] = sum[c] / some;
+    for (int c = 0; c < D; ++c) carried_[c] = sum[c] / sample;
     return space_.any(bed_.beads, [&](std::int32_t b) { return is_outside(b); });
   }
 

@@ -8,13 +8,13 @@
 namespace twincell::sim {
 
 /// Largest number of threads of a block. It bounds the registers of a thread.
-inline constexpr int kMostThreads = 512;
+inline constexpr int kMaxThreads = 512;
 
 /// Threads of a card that take one way through a program together.
 inline constexpr std::int32_t kWarp = 32;
 
 /// Largest number of stops of a launch.
-inline constexpr int kMostStops = 20;
+inline constexpr int kMaxStops = 20;
 
 /// What a launch leaves to the next one and to the host.
 struct BedReport {
@@ -76,13 +76,12 @@ struct DeviceBed {
   double skin;           ///< sigma; pairs with gaps below are listed
   bool periodic, spin, locate, has_drag;
 
-  std::int64_t step;  ///< present step of the system
-  std::int64_t
-      stops[kMostStops];       ///< steps from the present one on at which the state is transferred, rising
-  std::int64_t last_stop;      ///< index of the last one, with which the launch ends
-  std::int64_t rebuild_every;  ///< for tests: also build the list at every n-th step; 0: no
-  bool known;                  ///< the forces are those at the present positions
-  bool fresh;                  ///< positions may have changed since the last launch: the list is built first
+  std::int64_t step;              ///< present step of the system
+  std::int64_t stops[kMaxStops];  ///< steps from the present one on at which the state is transferred, rising
+  std::int64_t last_stop;         ///< index of the last one, with which the launch ends
+  std::int64_t rebuild_every;     ///< for tests: also build the list at every n-th step; 0: no
+  bool known;                     ///< the forces are those at the present positions
+  bool fresh;  ///< positions may have changed since the last launch: the list is built first
 };
 
 /// Bytes of a word of what is transferred.

@@ -18,10 +18,10 @@ namespace twincell::sim {
 
 namespace {
 
-/// Threads of a block: about as many as beads, a power of two up to kMostThreads. A step of one bed of 400
+/// Threads of a block: about as many as beads, a power of two up to kMaxThreads. A step of one bed of 400
 /// took 24, 17 and 14 us with 128, 256 and 512 threads on an H200, a step of 1056 of them 234, 178 and 173
 /// us.
-constexpr unsigned kLeastThreads = 64;
+constexpr unsigned kMinThreads = 64;
 
 /// Launches in progress at once. With 32 of them on an H100 the calls that begin a launch did not return
 /// before fewer than some 13 were in progress, however threads waited for the end of theirs. 126 beds then
@@ -104,7 +104,7 @@ class CudaExecutor : public Executor {
     std::byte* arguments = queue->card;
     void* values[] = {&arguments};
     const unsigned threads =
-        std::clamp(std::bit_ceil(static_cast<unsigned>(most)), kLeastThreads, unsigned{kMostThreads});
+        std::clamp(std::bit_ceil(static_cast<unsigned>(most)), kMinThreads, unsigned{kMaxThreads});
     require(fmt::format("{} does not start {}", name_, kernel.name),
             driver_.launch(function_of(kernel), static_cast<unsigned>(beds.size()), 1, 1, threads, 1, 1, 0,
                            queue->stream, values, nullptr));

@@ -114,7 +114,7 @@ __device__ inline const DeviceBed& own_bed(const BlockSpace& space, const Device
 #define TWINCELL_JOIN(a, b) a##b
 #define TWINCELL_ENTRY(name, suffix) TWINCELL_JOIN(name, suffix)
 #define TWINCELL_KERNEL(suffix, dimension, velocity)                                                           \
-  extern "C" __attribute__((global)) __attribute__((launch_bounds(kMostThreads))) void TWINCELL_ENTRY(         \
+  extern "C" __attribute__((global)) __attribute__((launch_bounds(kMaxThreads))) void TWINCELL_ENTRY(         \
       TWINCELL_NAME, suffix)(const DeviceBed* beds) {                                                          \
     const BlockSpace space = own_space();                                                                      \
     advance_bed<BlockSpace, LawSet<TWINCELL_NORMAL, TWINCELL_TANGENTIAL, NoRolling>, dimension,                \

@@ -1,9 +1,9 @@
 #pragma once
 /// \file
 /// The combinations of contact laws for which the device kernel is compiled: the only list of them. To add
-/// one, add a line. A law whose force needs more than the operations of laws/real.hpp, such as the logarithm
-/// of "velocity-dependent-restitution", cannot be added. Each line costs four kernels, about a second of
-/// compiling.
+/// one, add a line. A law whose force needs more than the operations of laws/scalar_arithmetic.hpp, such as
+/// the logarithm of "velocity-dependent-restitution", cannot be added. Each line costs four kernels, about a
+/// second of compiling.
 
 #include "sim/contact/contact.hpp"
 

@@ -13,6 +13,7 @@
 
 #include "core/error.hpp"
 #include "sim/device/bed_memory.hpp"
+#include "sim/laws/cell_laws.hpp"
 #include "sim/stepping/contact_memories.hpp"
 #include "sim/stepping/packed_beads.hpp"
 
@@ -76,7 +77,7 @@ class DeviceSolver : public Solver {
     for (Size next = 0; next < stops.size();) {
       const std::int64_t begin = s.step;
       Size count = 0;
-      for (; count < kMostStops && next + count < stops.size(); ++count) {
+      for (; count < kMaxStops && next + count < stops.size(); ++count) {
         if (stops[next + count].step - begin > kStepsPerLaunch) break;
         there_.stops[count] = stops[next + count].step - begin;
       }
@@ -185,7 +186,7 @@ class DeviceSolver : public Solver {
     require_table(sizes);
     parts_ = place_bed(here_, sizes, nullptr);
     image_.assign(parts_.all / sizeof(double), 0.0);
-    states_.resize(kMostStops * parts_.state);
+    states_.resize(kMaxStops * parts_.state);
     place_bed(here_, sizes, image());
     memory_ = batcher_.executor().allocate(parts_.constants);
     place_bed(there_, sizes, memory_);
@@ -218,24 +219,24 @@ class DeviceSolver : public Solver {
   }
   [[nodiscard]] std::vector<double> pair_constants(Size a, Size b) const {
     const double ra = beads_.radius(a), rb = beads_.radius(b);
-    return contact_constants(plan_.bead, beads_.pair(a, b), ra + rb, 1 / ra, 1 / rb);
+    return contact_constants(plan_.laws->bead, beads_.pair(a, b), ra + rb, 1 / ra, 1 / rb);
   }
   [[nodiscard]] std::vector<double> wall_constants(Size w, Size a) const {
     const double r = beads_.radius(a);
-    return contact_constants(plan_.wall_laws[w], beads_.wall(a), r, 1 / r, 0);
+    return contact_constants(plan_.laws->walls[w], beads_.wall(a), r, 1 / r, 0);
   }
   /// Beads of many sizes take a table of the constants of each pair of sizes.
   static void require_table(const BedSizes& sizes) {
-    constexpr double kMost = 256.0 * 1024 * 1024;
+    constexpr double kMaxTable_bytes = 256.0 * 1024 * 1024;
     const double bytes = static_cast<double>(sizes.kinds * sizes.kinds * sizes.constants * sizeof(double));
-    if (bytes > kMost)
+    if (bytes > kMaxTable_bytes)
       throw ConfigError(
           {.file = {}, .key = "beads.spread"},
-          fmt::format(
-              "{} sizes of beads are too many for --device, the bound is {}; use fewer "
-              "beads, or run without --device.",
-              sizes.kinds,
-              static_cast<int>(std::sqrt(kMost / static_cast<double>(sizes.constants * sizeof(double))))));
+          fmt::format("{} sizes of beads are too many for --device, the bound is {}; use fewer "
+                      "beads, or run without --device.",
+                      sizes.kinds,
+                      static_cast<int>(std::sqrt(kMaxTable_bytes /
+                                                 static_cast<double>(sizes.constants * sizeof(double))))));
   }
   /// Calls copy(numbers in the image, packed numbers, count) for each array of the beads.
   template <class Copy>

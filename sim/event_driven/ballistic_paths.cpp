@@ -45,8 +45,9 @@ HWY_INLINE V set(double x) {
 }
 /// x minus the nearest multiple of a period. \param per 1/period
 HWY_INLINE V nearest(V x, double period, double per) {
-  const V magic = set(6755399441055744.0);  // 1.5 2^52: its addition rounds to an integer
-  return hn::Sub(x, hn::Mul(hn::Sub(hn::Add(hn::Mul(x, set(per)), magic), magic), set(period)));
+  const V rounding_constant = set(6755399441055744.0);  // 1.5 2^52: its addition rounds to an integer
+  return hn::Sub(
+      x, hn::Mul(hn::Sub(hn::Add(hn::Mul(x, set(per)), rounding_constant), rounding_constant), set(period)));
 }
 HWY_INLINE V places(std::size_t first) {
   return hn::Add(hn::Iota(Tag(), 0), set(static_cast<double>(first)));

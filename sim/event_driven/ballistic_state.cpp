@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/laws/cell_laws.hpp"
+
 namespace twincell::sim {
 
 namespace {
@@ -141,7 +143,7 @@ CollisionSetting BallisticState::setting(std::int32_t i, std::int32_t j) const {
   const double m = mass[a], r = paths.radius(a);
   if (j < 0) {
     const Wall& wall = walls[static_cast<std::size_t>(-1 - j)];
-    e.laws = &plan->wall_laws[static_cast<std::size_t>(-1 - j)];
+    e.laws = &plan->laws->walls[static_cast<std::size_t>(-1 - j)];
     e.reach = r;
     e.turn = turn[a];
     e.pair = {m, r, 1 / m + turn[a]};
@@ -151,7 +153,7 @@ CollisionSetting BallisticState::setting(std::int32_t i, std::int32_t j) const {
   } else {
     const auto b = static_cast<std::size_t>(j);
     const double m_b = mass[b], r_b = paths.radius(b);
-    e.laws = &plan->bead;
+    e.laws = &plan->laws->bead;
     e.reach = r + r_b;
     e.turn = turn[a] + turn[b];
     e.pair = {m * m_b / (m + m_b), r * r_b / (r + r_b), 1 / m + 1 / m_b + turn[a] + turn[b]};

@@ -14,6 +14,7 @@
 #include "sim/contact/stage_polynomial.hpp"
 #include "sim/event_driven/collision_with_memory.hpp"
 #include "sim/kernels/kernels.hpp"
+#include "sim/laws/contact_laws.hpp"
 
 namespace twincell::sim {
 
@@ -65,8 +66,8 @@ class BinaryCollision {
       double h = longest;
       if (const double left = time + (1 + kBeyond) * scale - t; left > 0) h = std::min(h, left);
       // A step that extends far beyond a kink may have to be repeated, and needs more iterations.
-      if (const double slides = step.sliding_time(); slides < kSoon * scale)
-        h = std::min(h, kAmple * slides + kLeast * scale);
+      if (const double slides = step.sliding_time(); slides < kMaxSlidingTime * scale)
+        h = std::min(h, kSlidingFactor * slides + kSlidingMargin * scale);
       h = std::min(shorter * h, last - t);
       const double error = step.take(h);
       if (!(error <= 1) && h > kShortestStep * scale) {
@@ -90,7 +91,7 @@ class BinaryCollision {
       } else if (what == Event::limit) {
         regime.slides = !regime.slides;
       }
-      if (error < kEasy) longest = std::min(2 * longest, kLongestStep * scale);
+      if (error < kMaxErrorToDouble) longest = std::min(2 * longest, kLongestStep * scale);
       if (end.parted) break;
       step.begin(regime, t, y);
       if (step.overlap() > deep) deep = step.overlap(), middle = y, end.middle = t;
@@ -119,11 +120,11 @@ class BinaryCollision {
   struct Regime {
     bool pressed, slides;  ///< F_n > 0; the Coulomb limit binds
   };
-  enum class Event { none, turn, limit, parting };  ///< turn: F_n changes sign
-  static constexpr double kEasy = 1e-4;             ///< error below which the step is doubled
-  // In contact times. If sliding is predicted to end within kSoon, the step ends after kAmple times that time
-  // plus kLeast.
-  static constexpr double kSoon = 0.25, kAmple = 1.15, kLeast = 0.01;
+  enum class Event { none, turn, limit, parting };   ///< turn: F_n changes sign
+  static constexpr double kMaxErrorToDouble = 1e-4;  ///< error below which the step is doubled
+  // In contact times. If sliding is predicted to end within kMaxSlidingTime, the step ends after
+  // kSlidingFactor times that time plus kSlidingMargin.
+  static constexpr double kMaxSlidingTime = 0.25, kSlidingFactor = 1.15, kSlidingMargin = 0.01;
 
   static void put(const Vec3& v, double* to) {
     if constexpr (D == 2) {

@@ -60,8 +60,8 @@ ClusterState after(const Cluster& cluster, std::int64_t steps,
   return state;
 }
 
-std::optional<System> disperse(Cluster& cluster, std::int64_t contact, std::int64_t most,
-                               const std::function<std::unique_ptr<Solver>()>& make_solver) {
+std::optional<System> separate_cluster(Cluster& cluster, std::int64_t contact, std::int64_t most,
+                                       const std::function<std::unique_ptr<Solver>()>& make_solver) {
   const std::int64_t every = std::max<std::int64_t>(1, contact / 8);
   System s = cluster.start;
   const auto moving = make_solver();

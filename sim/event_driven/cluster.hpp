@@ -39,7 +39,7 @@ ClusterState after(const Cluster& cluster, std::int64_t steps,
 /// \param contact number of steps of the shortest contact
 /// \param most largest number of steps
 /// \returns the final state; nothing if the beads have not parted after `most` steps or overlap too deeply
-std::optional<System> disperse(Cluster& cluster, std::int64_t contact, std::int64_t most,
-                               const std::function<std::unique_ptr<Solver>()>& make_solver);
+std::optional<System> separate_cluster(Cluster& cluster, std::int64_t contact, std::int64_t most,
+                                       const std::function<std::unique_ptr<Solver>()>& make_solver);
 
 }  // namespace twincell::sim

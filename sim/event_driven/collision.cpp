@@ -2,6 +2,8 @@
 
 #include <variant>
 
+#include "sim/laws/contact_laws.hpp"
+
 namespace twincell::sim {
 
 double collision_time(const CollisionSetting& setting, double speed) {

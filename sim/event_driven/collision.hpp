@@ -4,10 +4,12 @@
 
 #include <optional>
 
-#include "sim/laws/contact_laws.hpp"
+#include "sim/laws/parameters.hpp"
 #include "sim/system/system.hpp"
 
 namespace twincell::sim {
+
+struct ContactLaws;
 
 /// Relative motion of two bodies in contact.
 struct RelativeMotion {
@@ -19,7 +21,7 @@ struct RelativeMotion {
 /// Bodies, laws and external accelerations of a collision.
 struct CollisionSetting {
   int dimension = 2;
-  const ContactLaws* laws = nullptr;
+  const ContactLaws* laws = nullptr;  ///< laws/contact_laws.hpp
   PairScale pair{};
   double reach = 1;  ///< R_i + R_j; at a wall, R
   double turn = 0;   ///< R_i^2/I_i + R_j^2/I_j; at a wall, R^2/I

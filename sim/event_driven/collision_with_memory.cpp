@@ -9,7 +9,8 @@
 #include <type_traits>
 #include <variant>
 
-#include "sim/laws/isolated.hpp"
+#include "sim/laws/contact_laws.hpp"
+#include "sim/laws/separate_integration.hpp"
 
 namespace twincell::sim {
 
@@ -152,15 +153,15 @@ class CollisionWithMemory {
   }
   /// Longest step where the force is a root of the overlap. \param since time since the touch
   [[nodiscard]] double graded(double since, const State& y, double least_step) const {
-    constexpr double kShare = 0.5;
+    constexpr double kStepShare = 0.5;
     const Instant m = look(0, y);
     const double left = m.v_n > 0 ? m.overlap / m.v_n : HUGE_VAL;
-    return std::max(least_step, kShare * std::min(since, left));
+    return std::max(least_step, kStepShare * std::min(since, left));
   }
   [[nodiscard]] double limit(const Instant& m) const { return mu_ * std::abs(m.f_n); }
   /// Forces below this count as zero. Friction without a limit (mu = 1e9, for example) is then not cut at the
   /// instant at which F_n vanishes.
-  [[nodiscard]] double least() const { return kLeast * mu_ * largest_; }
+  [[nodiscard]] double least() const { return kZeroForceShare * mu_ * largest_; }
   [[nodiscard]] Vec3 sticking_force(const Instant& m) const { return -k_t_ * m.x - eta_t_ * m.v_t; }
   /// Bound of the rounding of the sticking force, whose parts cancel where a contact begins without a normal
   /// force. Its direction is then no direction.
@@ -352,7 +353,7 @@ class CollisionWithMemory {
   std::array<double, N::kConstants> c_n_;
   double k_t_, eta_t_, mu_;
   SlipReading reading_;
-  static constexpr double kLeast = 1e-8;
+  static constexpr double kZeroForceShare = 1e-8;
   Mode mode_ = Mode::stick;
   bool pressed_ = true;
   double largest_ = 0;   ///< |F_n| so far

@@ -8,6 +8,9 @@
 
 namespace twincell::sim {
 
+struct ContactLaws;
+enum class SlipReading;  // laws/tangential/spring.hpp
+
 /// The reading that the tangential law uses. Requires remembers(laws).
 SlipReading reading_of(const ContactLaws& laws);
 

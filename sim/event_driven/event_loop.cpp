@@ -8,7 +8,7 @@ namespace twincell::sim {
 
 namespace {
 
-constexpr std::size_t kMostInCluster = 8;  // with more members, all beads are advanced by steps
+constexpr std::size_t kMaxInCluster = 8;  // with more members, all beads are advanced by steps
 
 }  // namespace
 
@@ -50,7 +50,7 @@ bool EventLoop::advance(System& s, std::int64_t last) {
     now_ = std::max(now_, next.time);
     if (!handle(i, next)) {
       s.step = std::max(s.step, base_ + step_before(now_));
-      if (disperse_cluster(s)) continue;
+      if (resolve_cluster(s)) continue;
       return false;
     }
   }
@@ -336,7 +336,7 @@ bool EventLoop::begin_contact(std::int32_t i, std::int32_t j) {
 /// Extracts a cluster at the present step of the system (the beads of `cluster_`, the beads in contact with
 /// them, and the beads that may touch them) and advances it by time steps until its beads have parted.
 /// \returns false if they do not part or are too many; the contacts are then unchanged
-bool EventLoop::disperse_cluster(System& s) {
+bool EventLoop::resolve_cluster(System& s) {
   if (cluster_.empty()) return false;
   write(s);
   const double from = static_cast<double>(s.step - base_) * dt_;
@@ -348,12 +348,12 @@ bool EventLoop::disperse_cluster(System& s) {
     for (const std::int32_t k : more)
       if (!in_cluster(k)) cluster_.push_back(k);
     add_partners(from);
-    if (cluster_.size() == members.size() || cluster_.size() > kMostInCluster) return false;
+    if (cluster_.size() == members.size() || cluster_.size() > kMaxInCluster) return false;
     members = cluster_;
     std::sort(cluster_.begin(), cluster_.end());
     ClusterRun c{take_out(s, memories_, cluster_), from, 0, {}};
     const auto end =
-        disperse(c.cluster, contact, static_cast<std::int64_t>(kLongestContact) * contact, make_few_);
+        separate_cluster(c.cluster, contact, static_cast<std::int64_t>(kLongestContact) * contact, make_few_);
     if (!end) return false;
     c.until = static_cast<double>(s.step + c.cluster.steps - base_) * dt_;
     for (const Bead& b : c.cluster.start.beads) c.before.push_back(beads_.path_of(b, from));

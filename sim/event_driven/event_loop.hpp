@@ -77,7 +77,7 @@ class EventLoop {
   bool add_near(std::span<const PathInterval> intervals);
   void add_near_one(std::span<const PathInterval> intervals);
   bool begin_contact(std::int32_t i, std::int32_t j);
-  bool disperse_cluster(System& s);
+  bool resolve_cluster(System& s);
   void add_partners(double from);
   bool end_cluster(ClusterRun run, const System& end);
   [[nodiscard]] std::int64_t step_before(double t) const;

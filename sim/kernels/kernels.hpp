@@ -10,7 +10,8 @@
 #include <string_view>
 
 #include "sim/contact/collocation.hpp"
-#include "sim/contact/contact.hpp"
+#include "sim/contact/contact_constants.hpp"
+#include "sim/contact/velocity.hpp"
 
 namespace twincell::sim {
 

@@ -18,9 +18,9 @@ using Four = hn::FixedTag<double, 4>;
 using Two = hn::FixedTag<double, 2>;
 using One = hn::FixedTag<double, 1>;
 
-/// A SIMD vector of numbers with the operations of laws/real.hpp. Two vectors in parallel, to fill the gaps
-/// in one contact's long chain of dependent operations, were tried and dropped (a fifth slower): the
-/// arithmetic units are already busy, and there are too few registers.
+/// A SIMD vector of numbers with the operations of laws/scalar_arithmetic.hpp. Two vectors in parallel, to
+/// fill the gaps in one contact's long chain of dependent operations, were tried and dropped (a fifth
+/// slower): the arithmetic units are already busy, and there are too few registers.
 struct Pack {
   using Tag = All;
   using Raw = hn::Vec<Tag>;

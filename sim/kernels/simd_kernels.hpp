@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// Implementation of the kernels for any kind of lanes. A Lanes class (simd_scalar.hpp, simd_highway.hpp)
-/// provides a type V of several numbers with the operations of laws/real.hpp, a Row of four numbers, and the
-/// transfers between the records of beads and V.
+/// provides a type V of several numbers with the operations of laws/scalar_arithmetic.hpp, a Row of four
+/// numbers, and the transfers between the records of beads and V.
 
 #include <array>
 #include <cmath>
@@ -10,6 +10,7 @@
 #include <utility>
 #include <variant>
 
+#include "sim/contact/contact.hpp"
 #include "sim/kernels/kernels.hpp"
 
 #ifndef TWINCELL_LANES

@@ -4,6 +4,7 @@
 /// reference against which the SIMD kernels are tested.
 
 #include "sim/kernels/kernels.hpp"
+#include "sim/laws/scalar_arithmetic.hpp"
 
 namespace twincell::sim {
 

@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "core/provenance.hpp"
+#include "sim/laws/cell_laws.hpp"
+#include "sim/laws/law_words.hpp"
 #include "sim/run/simulation.hpp"
 #include "sim/scene/make_plan.hpp"
 #include "sim/start/start.hpp"
@@ -111,15 +113,15 @@ Hooke hooke_of(const ContactLaws& laws, double m_eff, const Scene& scene, const 
              laws.tangential);
   std::visit(Overloaded{[](const NoRolling&) {}, [&](const auto& law) { no_word("rolling", law.kName); }},
              laws.rolling);
-  constexpr double kMostFriction = 1e4;  // LAMMPS stops at a larger xmu
-  if (h.mu > kMostFriction)
-    refuse(scene, table + ".mu", fmt::format("{:g} exceeds LAMMPS's limit, {:g}.", h.mu, kMostFriction));
+  constexpr double kMaxFriction = 1e4;  // LAMMPS stops at a larger xmu
+  if (h.mu > kMaxFriction)
+    refuse(scene, table + ".mu", fmt::format("{:g} exceeds LAMMPS's limit, {:g}.", h.mu, kMaxFriction));
   return h;
 }
 
 /// LAMMPS's damping coefficients are rates, the same for all masses; damping constants and restitutions
 /// require equal masses.
-void refuse_unlike_masses(const Scene& scene, const Plan& plan) {
+void refuse_different_masses(const Scene& scene, const Plan& plan) {
   const auto check = [&](const auto& law) {
     if constexpr (requires { law.damping; })
       if (law.damping.constant != 0 || law.damping.root != 0)
@@ -131,8 +133,8 @@ void refuse_unlike_masses(const Scene& scene, const Plan& plan) {
     std::visit(check, laws.normal);
     std::visit(check, laws.tangential);
   };
-  check_laws(plan.bead);
-  for (const ContactLaws& laws : plan.wall_laws) check_laws(laws);
+  check_laws(plan.laws->bead);
+  for (const ContactLaws& laws : plan.laws->walls) check_laws(laws);
 }
 
 /// The walls of a plan. Opposite walls with the same law share one fix, which then visits each bead only
@@ -148,7 +150,7 @@ std::vector<FlatWalls> flat_walls(const Scene& scene, const Plan& plan) {
     if (std::abs(wall.n[axis]) != 1)
       refuse(scene, "cell.side_tilt", "LAMMPS's fix wall/gran supports only walls along the axes.");
     const auto known = table.find(wall.name);
-    const Hooke law = hooke_of(plan.wall_laws[w], scene.mass, scene,
+    const Hooke law = hooke_of(plan.laws->walls[w], scene.mass, scene,
                                "contact." + (known == table.end() ? wall.name : known->second));
     const double at = wall.n[axis] * wall.offset;
     const bool lower = wall.n[axis] > 0;
@@ -181,10 +183,10 @@ Model model_of(const Scene& scene, const Plan& plan) {
   if (scene.drive.ramp) refuse(scene, "drive.ramp", "LAMMPS's walls move as a sine that does not change.");
   if (scene.drive.horizontal) refuse(scene, "drive.horizontal", "LAMMPS's walls move along one axis.");
   if (scene.plate_drag > 0) refuse(scene, "cell.plate_drag", "LAMMPS has no drag against a moving cell.");
-  if (scene.spread != SizeSpread::none || scene.intruder) refuse_unlike_masses(scene, plan);
+  if (scene.spread != SizeSpread::none || scene.intruder) refuse_different_masses(scene, plan);
   Model m;
   m.dimension = plan.dimension;
-  m.bead = hooke_of(plan.bead, scene.mass / 2, scene, "contact");
+  m.bead = hooke_of(plan.laws->bead, scene.mass / 2, scene, "contact");
   m.walls = flat_walls(scene, plan);
   m.gravity = scene.gravity;
   m.skin = 0.4 * scene.radius;
@@ -422,7 +424,7 @@ std::string input_text(const Model& m) {
 LammpsDeck deck_of(Model& m, const Scene& scene, const Plan& plan) {
   if (m.beads.empty()) refuse(scene, "beads.count", "LAMMPS does not read a system without beads.");
   if (std::any_of(m.beads.begin(), m.beads.end(), [&](const DeckBead& b) { return b.mass != scene.mass; }))
-    refuse_unlike_masses(scene, plan);
+    refuse_different_masses(scene, plan);
   if (m.boundary[2] != "p")
     for (const DeckBead& b : m.beads) m.upper.z() = std::max(m.upper.z(), b.position.z() + 2 * b.radius);
   return {input_text(m), data_text(m), import_command(m)};

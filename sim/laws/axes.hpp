@@ -62,33 +62,4 @@ std::string law_name(const Axis& axis) {
   return std::visit([](const auto& law) { return std::string(law.kName); }, axis);
 }
 
-/// Checks that a table contains valid parameters for the named laws.
-/// \throws ConfigError
-void check_laws(const std::string& normal, const std::string& tangential, const std::string& rolling,
-                const ContactTable& table);
-
-/// The words of an axis, for scenes and messages.
-std::vector<std::string> normal_words();
-std::vector<std::string> tangential_words();
-std::vector<std::string> rolling_words();
-/// Whether the named tangential law has a spring with history.
-bool has_history(const std::string& tangential);
-/// Whether the named tangential law reads a key.
-bool tangential_reads(const std::string& tangential, const std::string& key);
-/// The word of the law to choose instead of the named tangential law for a force without history; the law
-/// itself if it has none.
-std::string law_without_history(const std::string& tangential);
-/// The keys that the named laws read.
-std::vector<std::string> keys_of(const std::string& normal, const std::string& tangential,
-                                 const std::string& rolling);
-/// The keys of all laws.
-std::vector<std::string> all_law_keys();
-/// The axis to which a key of all_law_keys() belongs ("normal", for example), and the words of the laws that
-/// read it.
-struct KeyReaders {
-  std::string axis;
-  std::vector<std::string> laws;
-};
-KeyReaders readers_of(const std::string& key);
-
 }  // namespace twincell::sim

@@ -3,7 +3,7 @@
 #include <type_traits>
 #include <variant>
 
-#include "sim/laws/isolated.hpp"
+#include "sim/laws/separate_integration.hpp"
 
 namespace twincell::sim {
 

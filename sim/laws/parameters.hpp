@@ -23,9 +23,10 @@ struct PairScale {
 PairScale equal_beads(double radius, double mass, double inertia_factor);
 PairScale bead_and_wall(double radius, double mass, double inertia_factor);
 
-/// Mutually exclusive keys: at most one per table. A key of an inner table overrides any key of its group in
-/// an outer table, and a key of the scene overrides one of the preset.
+/// Mutually exclusive keys of the normal damping: at most one per table. A key of an inner table overrides
+/// any key of its group in an outer table, and a key of the scene overrides one of the preset.
 const std::vector<std::string>& normal_damping_keys();
+/// The same of the tangential damping.
 const std::vector<std::string>& tangential_damping_keys();
 
 /// The tables in which one kind of contact looks up its keys: first its own ([contact.lid], for example),

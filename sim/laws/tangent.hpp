@@ -3,7 +3,7 @@
 /// Vectors in the tangent plane of a contact: a signed number in 2D, a vector in 3D. Laws of friction and of
 /// rolling are written once for both.
 
-#include "sim/laws/real.hpp"
+#include "sim/laws/scalar_arithmetic.hpp"
 
 namespace twincell::sim {
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <numeric>
 
+#include "sim/laws/cell_laws.hpp"
 #include "sim/stepping/packed_beads.hpp"
 #include "sim/system/cell_grid.hpp"
 
@@ -33,7 +34,7 @@ class Evaluation {
   [[nodiscard]] ContactForce pair(std::int32_t i, std::int32_t j, const Vec3& shift) {
     const Bead &a = system_.beads[static_cast<Size>(i)], &b = system_.beads[static_cast<Size>(j)];
     const std::vector<double> constants =
-        contact_constants(plan_.bead, beads_.pair(static_cast<Size>(i), static_cast<Size>(j)),
+        contact_constants(plan_.laws->bead, beads_.pair(static_cast<Size>(i), static_cast<Size>(j)),
                           a.radius + b.radius, 1 / a.radius, 1 / b.radius);
     std::vector<double> memory = memory_of({i, j});
     const std::int32_t record_i = i * record_, record_j = j * record_;
@@ -54,7 +55,7 @@ class Evaluation {
     const Bead& bead = system_.beads[static_cast<Size>(i)];
     const Wall& wall = system_.walls[static_cast<Size>(w)];
     const std::vector<double> constants =
-        contact_constants(plan_.wall_laws[static_cast<Size>(w)], beads_.wall(static_cast<Size>(i)),
+        contact_constants(plan_.laws->walls[static_cast<Size>(w)], beads_.wall(static_cast<Size>(i)),
                           bead.radius, 1 / bead.radius, 0);
     std::vector<double> memory = memory_of({i, -1 - w});
     const std::int32_t record = i * record_;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "sim/laws/cell_laws.hpp"
+#include "sim/laws/law_words.hpp"
 #include "sim/scene/drive_tables.hpp"
 #include "sim/scene/plan_effects.hpp"
 #include "sim/scene/plan_limits.hpp"
@@ -39,13 +41,14 @@ ContactLaws read_laws(const ContactChoice& words, const ContactTable& table) {
 
 void set_laws(const Scene& s, Plan& plan) {
   const ContactChoice words = reduced_laws(s.contact, plan.walls);
-  plan.bead = read_laws(words, s.contact.bead);
-  for (const Wall& w : plan.walls) plan.wall_laws.push_back(read_laws(words, s.contact.wall.at(w.name)));
-  plan.key = {s.dimension, plan.bead.normal.index(), plan.bead.tangential.index(), plan.bead.rolling.index(),
+  CellLaws laws{.bead = read_laws(words, s.contact.bead), .walls = {}};
+  for (const Wall& w : plan.walls) laws.walls.push_back(read_laws(words, s.contact.wall.at(w.name)));
+  plan.key = {s.dimension, laws.bead.normal.index(), laws.bead.tangential.index(), laws.bead.rolling.index(),
               integrator_named(s.integrator).velocity};
   plan.locate = integrator_named(s.integrator).locate;
-  plan.rotation = std::visit([](const auto& law) { return law.kActs; }, plan.bead.tangential);
-  plan.history = std::visit([](const auto& law) { return law.kHistory; }, plan.bead.tangential);
+  plan.rotation = std::visit([](const auto& law) { return law.kActs; }, laws.bead.tangential);
+  plan.history = std::visit([](const auto& law) { return law.kHistory; }, laws.bead.tangential);
+  plan.laws = std::make_shared<const CellLaws>(std::move(laws));
 }
 
 /// Number of cycles: a schedule of the amplitude precedes the cycles that are discarded.

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "sim/contact/contact.hpp"
 #include "sim/kernels/kernels.hpp"
+#include "sim/laws/cell_laws.hpp"
 
 namespace twincell::sim {
 
@@ -32,9 +34,9 @@ std::size_t remembered_numbers(const Plan& plan) {
 }
 
 std::string Plan::law_names() const {
-  std::string name = fmt::format("{}D; normal: {}; tangential: {}", dimension, law_name(bead.normal),
-                                 law_name(bead.tangential));
-  if (key.rolling > 0) name += "; rolling: " + law_name(bead.rolling);
+  std::string name = fmt::format("{}D; normal: {}; tangential: {}", dimension, law_name(laws->bead.normal),
+                                 law_name(laws->bead.tangential));
+  if (key.rolling > 0) name += "; rolling: " + law_name(laws->bead.rolling);
   if (key.velocity == Velocity::full_step) name += "; predicted velocities";
   if (locate) name += "; steps split at entry and exit";
   return name;

@@ -5,14 +5,18 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "sim/kernels/kernels.hpp"
-#include "sim/laws/contact_laws.hpp"
 #include "sim/scene/scene.hpp"
 
 namespace twincell::sim {
+
+struct CellLaws;
+struct ContactLaws;
+struct PairScale;
 
 /// A physical effect, and why it is on or off.
 struct Effect {
@@ -48,11 +52,10 @@ inline constexpr double kTravelBound = 0.05;
 /// All that a run computes: contact laws, effects, time step and bounds.
 struct Plan {
   int dimension = 2;
-  ContactLaws bead;
-  std::vector<Wall> walls;             ///< walls of the cell
-  std::vector<ContactLaws> wall_laws;  ///< laws of each wall
-  KernelKey key{};                     ///< selects the kernels
-  bool locate = false;                 ///< the instants of entry and exit are located within their steps
+  std::shared_ptr<const CellLaws> laws;  ///< laws/cell_laws.hpp; not null
+  std::vector<Wall> walls;               ///< walls of the cell
+  KernelKey key{};                       ///< selects the kernels
+  bool locate = false;                   ///< the instants of entry and exit are located within their steps
   bool rotation = false, history = false;
   bool event_driven =
       false;  ///< event-driven motion between contacts, where it is exact (event_driven_solver.hpp)

@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "core/error.hpp"
+#include "sim/laws/cell_laws.hpp"
+#include "sim/laws/law_words.hpp"
 #include "sim/scene/drive_tables.hpp"
 
 namespace twincell::sim {
@@ -45,7 +47,7 @@ std::optional<Effect> tension(const Scene& s, const Plan& plan) {
         else
           return std::nullopt;
       },
-      plan.bead.normal);
+      plan.laws->bead.normal);
 }
 
 // Friction and the effects that depend on it. The tangential law of the plan acts exactly if there is
@@ -58,7 +60,7 @@ Effect friction(const Scene& s, const Plan& plan) {
   if (!plan.rotation)
     return {name, State::off_by_proof, "mu = 0 everywhere: the Coulomb limit is zero, dashpot included"};
   return {name, State::on,
-          fmt::format("{}, mu = {:g}", law_name(plan.bead.tangential), read_friction(s.contact.bead))};
+          fmt::format("{}, mu = {:g}", law_name(plan.laws->bead.tangential), read_friction(s.contact.bead))};
 }
 
 Effect rotation(const Scene& s, const Plan& plan) {
@@ -90,7 +92,7 @@ Effect rolling_resistance(const Scene& s, const Plan& plan) {
   if (s.contact.rolling == NoRolling::kWord)
     return {name, State::off_by_scene, fmt::format("contact.rolling = \"{}\"", NoRolling::kWord)};
   if (!plan.rotation) return {name, State::off_by_proof, "beads do not turn"};
-  return {name, State::on, law_name(plan.bead.rolling)};
+  return {name, State::on, law_name(plan.laws->bead.rolling)};
 }
 
 /// Equal beads share one set of constants.
@@ -221,7 +223,8 @@ void refuse_void_horizontal(const Scene& s, const Plan& plan) {
 }  // namespace
 
 std::vector<Effect> list_effects(const Scene& s, const Plan& plan) {
-  std::vector<Effect> effects = {dimensions(s), {"normal force", State::on, law_name(plan.bead.normal)}};
+  std::vector<Effect> effects = {dimensions(s),
+                                 {"normal force", State::on, law_name(plan.laws->bead.normal)}};
   if (const std::optional<Effect> omitted = tension(s, plan)) effects.push_back(*omitted);
   for (const auto effect : {friction, rotation, tangential_history, rolling_resistance})
     effects.push_back(effect(s, plan));

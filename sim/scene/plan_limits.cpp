@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/error.hpp"
+#include "sim/laws/cell_laws.hpp"
 
 namespace twincell::sim {
 
@@ -79,8 +80,8 @@ void set_bounds(const Scene& s, const std::vector<BeadScale>& sizes, Plan& plan)
   plan.travel_bound = kTravelBound * 2 * std::min_element(sizes.begin(), sizes.end(), is_smaller)->radius;
   plan.overlap_bound = s.overlap_bound * 2 * plan.usual_radius;
   const auto force = [&](const auto& law) { return law.largest_force(plan.overlap_bound); };
-  plan.largest_force = std::visit(force, plan.bead.normal);
-  for (const ContactLaws& laws : plan.wall_laws)
+  plan.largest_force = std::visit(force, plan.laws->bead.normal);
+  for (const ContactLaws& laws : plan.laws->walls)
     plan.largest_force = std::max(plan.largest_force, std::visit(force, laws.normal));
 }
 
@@ -138,9 +139,9 @@ std::vector<TimeLimit> list_limits(const Scene& s, const std::vector<BeadScale>&
                                    const Plan& plan) {
   std::vector<TimeLimit> limits;
   for (const auto& [radius, mass] : fastest(sizes)) {
-    add_limits("bead-bead", plan.bead, equal_beads(radius, mass, s.inertia_factor), speed, limits);
+    add_limits("bead-bead", plan.laws->bead, equal_beads(radius, mass, s.inertia_factor), speed, limits);
     for (std::size_t w = 0; w < plan.walls.size(); ++w)
-      add_limits("bead-" + plan.walls[w].name, plan.wall_laws[w],
+      add_limits("bead-" + plan.walls[w].name, plan.laws->walls[w],
                  bead_and_wall(radius, mass, s.inertia_factor), speed, limits);
   }
   if (s.plate_drag > 0) limits.push_back({"plate drag", 1 / s.plate_drag});
@@ -149,18 +150,18 @@ std::vector<TimeLimit> list_limits(const Scene& s, const std::vector<BeadScale>&
 
 /// Steps of a cycle: each phase is a whole number of them.
 std::int64_t steps_of_cycle(const Scene& s, double shortest) {
-  constexpr double kMostSteps = 1e10;
+  constexpr double kMaxSteps = 1e10;
   double steps = s.drive.period() / (shortest / s.steps_per_contact);
   // While the frequency changes, a frame is at the step nearest to its phase.
   constexpr double kFinePhases = 1000;  // steps of the shortest cycle
   if (s.drive.ramp)
     if (const DriveRamp& ramp = *s.drive.ramp; ramp.changes_frequency())
       steps = std::max({steps, kFinePhases * ramp.to.omega / ramp.from.omega, kFinePhases});
-  if (!(steps <= kMostSteps))
+  if (!(steps <= kMaxSteps))
     throw ConfigError(
         s.where("drive"),
         fmt::format("a cycle of {:.3g} t0 takes {:.3g} steps of the shortest contact, the bound is {:g}.",
-                    s.drive.period(), steps, kMostSteps));
+                    s.drive.period(), steps, kMaxSteps));
   const auto whole = static_cast<std::int64_t>(std::ceil(steps));
   const std::int64_t rest = whole % s.phases;
   return rest == 0 ? whole : whole + s.phases - rest;

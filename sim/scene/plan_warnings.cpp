@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "sim/laws/cell_laws.hpp"
 #include "sim/scene/recorded_drive.hpp"
 
 namespace twincell::sim {
@@ -34,9 +35,9 @@ std::string_view why_no_friction(const ContactLaws& laws) {
 }
 
 void warn_of_missing_friction(const Plan& plan, std::vector<std::string>& warnings) {
-  const std::string_view why = why_no_friction(plan.bead);
+  const std::string_view why = why_no_friction(plan.laws->bead);
   const auto slides_freely = [](const ContactLaws& laws) { return !why_no_friction(laws).empty(); };
-  if (!why.empty() && std::all_of(plan.wall_laws.begin(), plan.wall_laws.end(), slides_freely))
+  if (!why.empty() && std::all_of(plan.laws->walls.begin(), plan.laws->walls.end(), slides_freely))
     warnings.push_back(fmt::format("the tangential law {}: no contact has friction, whatever mu is.", why));
 }
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "sim/laws/axes.hpp"
+#include "sim/laws/law_words.hpp"
 #include "sim/scene/check_scene.hpp"
 #include "sim/scene/drive_tables.hpp"
 #include "sim/scene/presets.hpp"

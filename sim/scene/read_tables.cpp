@@ -10,7 +10,9 @@
 
 #include "core/bounded_list.hpp"
 #include "core/key_record.hpp"
-#include "sim/laws/axes.hpp"
+#include "sim/laws/law_words.hpp"
+#include "sim/laws/rolling/none.hpp"
+#include "sim/laws/tangential/none.hpp"
 #include "sim/scene/drive_tables.hpp"
 #include "trajectory/recorded_motion.hpp"
 #include "trajectory/unit_keys.hpp"
@@ -71,12 +73,12 @@ double read_gravity(const Section& s, Scene& scene, Voids& voids) {
 }
 
 void read_side_tilt(const Section& s, Scene& scene) {
-  constexpr double kSteepest = 45;
+  constexpr double kMaxTilt_deg = 45;
   if (!s.is_list("side_tilt")) {
-    scene.left_tilt = scene.right_tilt = s.number_in("side_tilt", -kSteepest, kSteepest).value_or(0);
+    scene.left_tilt = scene.right_tilt = s.number_in("side_tilt", -kMaxTilt_deg, kMaxTilt_deg).value_or(0);
     return;
   }
-  const std::vector<double> both = numbers_in(s, "side_tilt", 2, -kSteepest, kSteepest).value();
+  const std::vector<double> both = numbers_in(s, "side_tilt", 2, -kMaxTilt_deg, kMaxTilt_deg).value();
   scene.left_tilt = both[0];
   scene.right_tilt = both[1];
 }
@@ -133,14 +135,14 @@ void read_intruder(const Section& s, Scene& scene, Voids& voids) {
 }  // namespace
 
 void read_beads(const Section& s, Scene& scene, Voids& voids) {
-  constexpr std::int64_t kMost = 10'000'000;
+  constexpr std::int64_t kMaxBeads = 10'000'000;
   scene.radius = s.number_in("radius", 0, 1e6, true).value_or(scene.radius);
   scene.mass = s.number_in("mass", 0, 1e12, true).value_or(scene.mass);
   const auto inertia = s.word("inertia", {"disc", "sphere"});
   if (scene.dimension == 3 && inertia && *inertia == "disc")
     throw ConfigError(s.where("inertia"), "beads of a 3D cell are spheres.");
   scene.inertia_factor = inertia ? (*inertia == "disc" ? 0.5 : 0.4) : scene.dimension == 3 ? 0.4 : 0.5;
-  const auto count = s.integer_in("count", 0, kMost);
+  const auto count = s.integer_in("count", 0, kMaxBeads);
   const auto layers = s.number_in("layers", 0, 1e6);
   if (count) scene.n_beads = static_cast<std::size_t>(*count);
   if (layers) {
@@ -148,9 +150,9 @@ void read_beads(const Section& s, Scene& scene, Voids& voids) {
     const double d = 2 * scene.radius;
     const double beads =
         std::round(*layers * scene.width / d * (scene.dimension == 3 ? scene.depth / d : 1.0));
-    if (!(beads <= static_cast<double>(kMost)))
-      throw ConfigError(s.where("layers"),
-                        fmt::format("{:g} layers are {:g} beads, the bound is {}.", *layers, beads, kMost));
+    if (!(beads <= static_cast<double>(kMaxBeads)))
+      throw ConfigError(s.where("layers"), fmt::format("{:g} layers are {:g} beads, the bound is {}.",
+                                                       *layers, beads, kMaxBeads));
     if (*layers > 0 && beads < 1)
       throw ConfigError(s.where("layers"), fmt::format("{:g} layers are less than one bead.", *layers));
     scene.n_beads = static_cast<std::size_t>(beads);
@@ -381,9 +383,8 @@ void read_time(const Section& s, Scene& scene) {
   const auto integrator = s.word("integrator", integrator_words());
   scene.integrator_stated = integrator.has_value();
   scene.integrator = integrator.value_or(std::string(kDefaultIntegrator.word));
-  scene.steps_per_contact =
-      s.number_in("steps_per_contact", scene.allow_unstable_step ? 1 : kFewestSteps, 1e6)
-          .value_or(integrator_named(scene.integrator).steps_per_contact);
+  scene.steps_per_contact = s.number_in("steps_per_contact", scene.allow_unstable_step ? 1 : kMinSteps, 1e6)
+                                .value_or(integrator_named(scene.integrator).steps_per_contact);
   refuse_former_word(s, "stepping", "flights", "event-driven");
   if (const auto stepping = s.word("stepping", words_of(kSteppings)))
     scene.stepping = row_named(kSteppings, *stepping, "time.stepping", "stepping").value;

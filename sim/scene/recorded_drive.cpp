@@ -48,14 +48,14 @@ std::string doubt_of_strength(double gamma) {
 
 /// The cutoff if it can remove noise and keeps the sine of the drive.
 double admitted(double cutoff, double omega, const MotionRecord& record, const Where& where) {
-  constexpr double kLeast = 2;
+  constexpr double kMinCutoffRatio = 2;  // cutoff over frequency of the drive
   const double frequency = omega / kTurn, rate = 1 / record.interval;
-  if (!(cutoff >= kLeast * frequency))
+  if (!(cutoff >= kMinCutoffRatio * frequency))
     throw ConfigError(
         where,
         fmt::format("{:.4g}/t0 would weaken the drive, whose frequency is {:.4g}/t0; it must be at least "
                     "{:g} times as high.",
-                    cutoff, frequency, kLeast));
+                    cutoff, frequency, kMinCutoffRatio));
   if (!(cutoff < rate / 2))
     throw ConfigError(where,
                       fmt::format("{:.4g}/t0 removes nothing: it must be below half the sampling rate of {}, "

@@ -54,7 +54,7 @@ inline constexpr double kListReach = 0.25;
 
 /// Steps per contact below which a run is refused unless time.allow_unstable_step is true, and below which
 /// there is a warning.
-inline constexpr double kFewestSteps = 6, kFewSteps = 20;
+inline constexpr double kMinSteps = 6, kFewSteps = 20;
 
 /// Largest seed. Up to this bound every language that reads a provenance represents integers exactly.
 inline constexpr std::int64_t kLargestSeed = std::int64_t{1} << 53;
@@ -133,7 +133,7 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
 
   // Time
   double steps_per_contact = kDefaultIntegrator.steps_per_contact;
-  bool allow_unstable_step = false;                 ///< fewer than kFewestSteps steps per contact are allowed
+  bool allow_unstable_step = false;                 ///< fewer than kMinSteps steps per contact are allowed
   std::string integrator{kDefaultIntegrator.word};  ///< word of one of kAllIntegrators
   bool integrator_stated = false;                   ///< set by file, preset or command line
   Stepping stepping = Stepping::automatic;

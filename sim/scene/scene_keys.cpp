@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "sim/laws/axes.hpp"
+#include "sim/laws/law_words.hpp"
 #include "sim/scene/read_scene.hpp"
 
 namespace twincell::sim {

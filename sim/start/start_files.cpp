@@ -59,7 +59,7 @@ std::optional<Scene> scene_of_file(const Scene& scene, const TrajectoryInfo& inf
 void refuse_void_sizes(
     const Scene& scene, const std::vector<Bead>& beads, bool radii, bool masses, const std::string& source,
     const std::function<std::optional<Scene>()>& written = [] { return std::nullopt; }) {
-  constexpr double kSame = 1e-6;  // units are converted
+  constexpr double kSameValue = 1e-6;  // units are converted
   const auto refuse_others = [&](const char* key, const char* numbers, double stated, auto differs) {
     const auto others = std::ranges::count_if(beads, differs);
     if (!scene.source || !scene.source->has(key) || 2 * others <= std::ssize(beads)) return;
@@ -72,11 +72,13 @@ void refuse_void_sizes(
   };
   // With masses of their own, radius and mass of a bead do not state a material either.
   if (radii && masses && scene.spread == SizeSpread::none)
-    refuse_others("beads.radius", "radii", scene.radius,
-                  [&](const Bead& b) { return std::abs(b.radius - scene.radius) > kSame * scene.radius; });
+    refuse_others("beads.radius", "radii", scene.radius, [&](const Bead& b) {
+      return std::abs(b.radius - scene.radius) > kSameValue * scene.radius;
+    });
   if (masses)
-    refuse_others("beads.mass", "masses", scene.mass,
-                  [&](const Bead& b) { return std::abs(b.mass - scene.mass_of(b.radius)) > kSame * b.mass; });
+    refuse_others("beads.mass", "masses", scene.mass, [&](const Bead& b) {
+      return std::abs(b.mass - scene.mass_of(b.radius)) > kSameValue * b.mass;
+    });
 }
 
 /// Start in motion: continues from a frame without changes.
@@ -217,14 +219,14 @@ Start from_trajectory(const Scene& scene, Progress& progress) {
                       [&] { return scene_of_file(scene, info); });
   // Camera noise is a few hundredths of a diameter; an overlap beyond 0.2 means that the file belongs to
   // another cell.
-  constexpr double kRefused = 0.2, kTolerated = 1e-4, kLeft = 0.05;
+  constexpr double kRefused = 0.2, kTolerated = 1e-4, kMaxOverlapLeft_sigma = 0.05;
   require_sound(start.beads, scene, kRefused, progress);
   const double left = relax_overlaps(start.beads, scene, kTolerated, 20000, progress);
-  if (left > kLeft)
+  if (left > kMaxOverlapLeft_sigma)
     throw ConfigError(scene.where("start.from"),
                       fmt::format("{}: the beads cannot be pushed apart, an overlap of {:.3g} sigma remains, "
                                   "the bound is {:g}; is the width correct?",
-                                  scene.from.string(), left, kLeft));
+                                  scene.from.string(), left, kMaxOverlapLeft_sigma));
   return start;
 }
 

@@ -119,7 +119,7 @@ void require_sound(const std::vector<Bead>& beads, const Scene& scene, double bo
                    const Vec3& plate) {
   CancellationCheck check(progress);
   const Where where = scene.where("start");
-  constexpr double kFar = 1e9;  // largest permitted height of a cell
+  constexpr double kMaxHeight_sigma = 1e9;  // of a cell
   auto walls = scene.walls();
   for (Wall& wall : walls)
     if (wall.moves) wall.offset += wall.n.dot(plate);
@@ -129,10 +129,10 @@ void require_sound(const std::vector<Bead>& beads, const Scene& scene, double bo
     check();
     if (!std::isfinite(b.x + b.y + b.z + b.vx + b.vy + b.vz + b.spin + b.spin_x + b.spin_z))
       throw ConfigError(where, fmt::format("bead {} has no finite position or velocity.", i));
-    if (centre_of(b).cwiseAbs().maxCoeff() > kFar)
+    if (centre_of(b).cwiseAbs().maxCoeff() > kMaxHeight_sigma)
       throw ConfigError(
           where, fmt::format("bead {} at ({:.4g}, {:.4g}, {:.4g}) is too far away, the bound is {:g}.", i,
-                             b.x, b.y, b.z, kFar));
+                             b.x, b.y, b.z, kMaxHeight_sigma));
     if (const WallOverlap outside = deepest_wall(walls, centre_of(b), b.radius);
         outside.depth > bound * 2 * b.radius)
       throw ConfigError(

@@ -29,6 +29,8 @@ Bead intruder_of(const Scene& scene);
 /// Positions, sizes and perturbations use separate random streams, so a change of one does not affect the
 /// others.
 enum class Stream : std::uint64_t { positions = 0, sizes = 1, perturbation = 2 };
+/// The random numbers of one stream, from their beginning; their seed is scene.seed + 0x9E3779B97F4A7C15
+/// stream.
 std::mt19937_64 engine_of(const Scene& scene, Stream stream);
 /// Uniform in [0, 1), from the 53 high bits, so the numbers are the same with every standard library.
 double uniform(std::mt19937_64& engine);

@@ -104,9 +104,9 @@ Start random_deposit(const Scene& scene, Progress& progress) {
   };
   // The first few beads may lie so that the last find no room. In a small cell this happens to one seed in a
   // hundred, so it begins anew; a large one fails only if it is too small for any order.
-  constexpr std::size_t kSmall = 1000;
+  constexpr std::size_t kMaxRetriedBeads = 1000;
   constexpr int kAttempts = 10;
-  for (int attempt = 0; attempt < (n <= kSmall ? kAttempts : 1); ++attempt)
+  for (int attempt = 0; attempt < (n <= kMaxRetriedBeads ? kAttempts : 1); ++attempt)
     if (place_all()) return start;
   const double base = scene.dimension == 2 ? scene.width : scene.width * scene.depth,
                taken = size_of_all(scene, radii) / (base * height);

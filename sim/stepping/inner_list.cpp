@@ -11,9 +11,9 @@ namespace {
 using Size = std::size_t;
 
 /// Largest number of steps for which an inner list is built (kLongHorizon if few pairs are near). If a list
-/// lasts fewer than kShort steps, the slack is increased.
+/// lasts fewer than kMinListSteps steps, the slack is increased.
 constexpr double kHorizon = 64, kLongHorizon = 256;
-constexpr std::int64_t kShort = 24;
+constexpr std::int64_t kMinListSteps = 24;
 
 /// Bound on the difference of any two velocities.
 double spread(const VelocityRange& range) {
@@ -159,7 +159,7 @@ void InnerPairs::pack(const PacketLayout& layout, const BeadShare& share, const 
 
 void InnerList::reset(const PacketLayout& layout, Size beads) {
   reference_.resize(static_cast<Size>(layout.record(1)) / 2 * beads);
-  steps_ = kShort;
+  steps_ = kMinListSteps;
 }
 
 void InnerList::measure_velocities(ListedBeads& beads, const std::vector<BeadShare>& shares) {
@@ -176,7 +176,7 @@ void InnerList::measure_velocities(ListedBeads& beads, const std::vector<BeadSha
 void InnerList::set_horizon(double dt, double skin, bool airborne) {
   // Slack: if the last list was short-lived, the slack was too small; if the deflection stayed well below it,
   // too large.
-  if (steps_ < kShort)
+  if (steps_ < kMinListSteps)
     slack_ *= 2;
   else if (deviated_ < 0.25 * slack_)
     slack_ *= 0.5;

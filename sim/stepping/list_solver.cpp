@@ -69,7 +69,7 @@ class ListSolver : public Solver {
     std::array<double, 3> period{};
     std::vector<Wall> walls;
   };
-  [[nodiscard]] bool is_as_left(const System& s, const PlateMotion& plate) const;
+  [[nodiscard]] bool is_as_left(const System& s, const PlateState& plate) const;
   void prepare(const System& s);
   void begin_lists(const System& s);
   void divide_among_threads(const System& s);
@@ -113,7 +113,7 @@ class ListSolver : public Solver {
 
   bool pairs_stale_ = false, walls_stale_ = false;  ///< lists to be built in this step
   double speed_bound_ = 0;                          ///< bound on speeds since the last inner list
-  PlateMotion plate_;
+  PlateState plate_;
   IntegrateArgs integrate_args_{};
   bool is_left_ = false;       ///< the last call ended without an error
   Surroundings surroundings_;  ///< at the last begin_lists()
@@ -125,7 +125,7 @@ class ListSolver : public Solver {
 
 /// Whether the system is as the last call left it, so that the lists go on. A run that is divided into short
 /// calls, between which its velocities are only read, then builds no more lists than in one call.
-bool ListSolver::is_as_left(const System& s, const PlateMotion& plate) const {
+bool ListSolver::is_as_left(const System& s, const PlateState& plate) const {
   if (!is_left_ || rebuild_every_ > 0 || !restored_.empty() || !(plate == plate_)) return false;
   const Surroundings& was = surroundings_;
   const auto is_same = [](const Wall& a, const Wall& b) {
@@ -520,8 +520,8 @@ void ListSolver::advance(System& s, std::int64_t steps) {
   const FlushSubnormals flush;
   const bool known = s.forces_known && s.forces.size() == s.beads.size();
   s.forces_known = known;
-  const PlateMotion plate = {s.plate_displacement(), s.plate_velocity_in_space(),
-                             s.plate_displacement_before()};
+  const PlateState plate = {s.plate_displacement(), s.plate_velocity_in_space(),
+                            s.plate_displacement_before()};
   const bool goes_on = is_as_left(s, plate);
   is_left_ = false;
   if (!goes_on) {

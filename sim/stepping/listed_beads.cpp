@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "sim/laws/cell_laws.hpp"
+
 namespace twincell::sim {
 
 BeadOrder BeadOrder::by_cells(const std::vector<Bead>& beads, double cell) {
@@ -35,14 +37,15 @@ ListedBeads::ListedBeads(const Plan& of, const Target& target)
 void ListedBeads::set_shared_constants() {
   if (!packed.equal() || packed.size() == 0 || !pair_constants.empty()) return;
   const double r = packed.radius(0);
-  pair_constants = layout.broadcast(contact_constants(plan.bead, packed.pair(0, 0), 2 * r, 1 / r, 1 / r));
-  for (std::size_t w = 0; w < plan.wall_laws.size(); ++w)
+  pair_constants =
+      layout.broadcast(contact_constants(plan.laws->bead, packed.pair(0, 0), 2 * r, 1 / r, 1 / r));
+  for (std::size_t w = 0; w < plan.laws->walls.size(); ++w)
     wall_constants.push_back(layout.broadcast(constants_at_wall(w, 0)));
 }
 
 std::vector<double> ListedBeads::constants_at_wall(std::size_t w, std::size_t place) const {
   const double r = packed.radius(place);
-  return contact_constants(plan.wall_laws[w], packed.wall(place), r, 1 / r, 0);
+  return contact_constants(plan.laws->walls[w], packed.wall(place), r, 1 / r, 0);
 }
 
 }  // namespace twincell::sim

@@ -31,8 +31,7 @@ void WallLists::reset(Size walls) {
   all_ = true;
 }
 
-void WallLists::add_step(const System& s, const PlateMotion& plate, const VelocityRange& range,
-                         double added) {
+void WallLists::add_step(const System& s, const PlateState& plate, const VelocityRange& range, double added) {
   // The displacement of a wall is its actual one in this step, not its velocity at one end of the step.
   const Vec3 moved = (plate.displacement - plate.before) / s.dt;
   for (Size w = 0; w < s.walls.size(); ++w) {
@@ -48,7 +47,7 @@ bool WallLists::any_stale() const {
   return false;
 }
 
-void WallLists::refresh(const System& s, const PlateMotion& plate, const VelocityRange& range, double skin) {
+void WallLists::refresh(const System& s, const PlateState& plate, const VelocityRange& range, double skin) {
   for (Size w = 0; w < s.walls.size(); ++w) {
     stale_[w] = all_ || !(approach_[w] <= margin_[w]);
     if (!stale_[w]) continue;

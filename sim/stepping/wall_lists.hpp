@@ -11,10 +11,10 @@
 namespace twincell::sim {
 
 /// Displacement and velocity of the plate, sigma and sigma/t0, and its displacement one step earlier.
-struct PlateMotion {
+struct PlateState {
   Vec3 displacement = Vec3::Zero(), velocity = Vec3::Zero(), before = Vec3::Zero();
 
-  bool operator==(const PlateMotion& other) const {
+  bool operator==(const PlateState& other) const {
     return displacement == other.displacement && velocity == other.velocity && before == other.before;
   }
 };
@@ -28,10 +28,10 @@ class WallLists {
   void discard() { all_ = true; }
   /// Registers one step, in which the plate moved. \param added change of velocities by contacts and gravity
   /// since the inner list was built
-  void add_step(const System& s, const PlateMotion& plate, const VelocityRange& range, double added);
+  void add_step(const System& s, const PlateState& plate, const VelocityRange& range, double added);
   [[nodiscard]] bool any_stale() const;
   /// Marks the lists that have become invalid and sets the margins of their successors.
-  void refresh(const System& s, const PlateMotion& plate, const VelocityRange& range, double skin);
+  void refresh(const System& s, const PlateState& plate, const VelocityRange& range, double skin);
   /// Whether list w must be built, with which margin.
   [[nodiscard]] bool is_stale(std::size_t w) const { return stale_[w] != 0; }
   [[nodiscard]] double margin(std::size_t w) const { return margin_[w]; }

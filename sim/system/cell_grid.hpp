@@ -47,12 +47,12 @@ class CellGrid {
       of_class = std::max(of_class, 2 * r + margin);
     }
     // Cells exceed the reach by more than rounding can move a bead across cells.
-    constexpr double kSlack = 1 + 1e-6, kSmallest = 1e-12;
+    constexpr double kSlack = 1 + 1e-6, kMinEdge_sigma = 1e-12;
     for (std::size_t k = 0; k < kClasses; ++k)
       for (std::size_t a = 0; a < 3; ++a) {
-        const double edge = std::max(reach[k] * kSlack, kSmallest);
+        const double edge = std::max(reach[k] * kSlack, kMinEdge_sigma);
         levels_[k].count[a] =
-            period[a] > 0 ? static_cast<std::int64_t>(std::clamp(std::floor(period[a] / edge), 1.0, kFar))
+            period[a] > 0 ? static_cast<std::int64_t>(std::clamp(std::floor(period[a] / edge), 1.0, kMaxCell))
                           : 0;
         levels_[k].edge[a] = period[a] > 0 ? period[a] / static_cast<double>(levels_[k].count[a]) : edge;
       }
@@ -106,8 +106,8 @@ class CellGrid {
   }
 
  private:
-  static constexpr int kClasses = 15;      ///< a key has room for 16; the last is reserved for the empty key
-  static constexpr double kFar = 1 << 19;  ///< cells from the origin; cells beyond are merged into one
+  static constexpr int kClasses = 15;  ///< a key has room for 16; the last is reserved for the empty key
+  static constexpr double kMaxCell = 1 << 19;  ///< cells from the origin; cells beyond are merged into one
   static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
   using Cell = std::array<std::int64_t, 3>;
 
@@ -125,7 +125,7 @@ class CellGrid {
     Cell c{};
     for (std::size_t a = 0; a < 3; ++a) {
       if (dimension_ == 2 && a == 1) continue;
-      double x = r[static_cast<int>(a)], low = -kFar, high = kFar;
+      double x = r[static_cast<int>(a)], low = -kMaxCell, high = kMaxCell;
       if (level.count[a] > 0) {
         x -= period_[a] * std::floor(x / period_[a]);
         low = 0;
@@ -183,12 +183,12 @@ void for_each_near_pair(const std::vector<Bead>& beads, int dimension, const std
     if (gap < margin) visit(i, j, gap, shift);
   };
   // Few beads: testing every pair is faster than filling a grid of cells.
-  constexpr std::size_t kFew = 150, kVeryFew = 12;
-  if (beads.size() <= kFew) {
+  constexpr std::size_t kMaxPairLoopBeads = 150, kMaxPlainLoopBeads = 12;
+  if (beads.size() <= kMaxPairLoopBeads) {
     const auto look_at_all_before = [&](std::size_t j) {
       for (std::size_t i = 0; i < j; ++i) look_at(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
     };
-    if (beads.size() <= kVeryFew) {
+    if (beads.size() <= kMaxPlainLoopBeads) {
       for (std::size_t j = 1; j < beads.size(); ++j) look_at_all_before(j);
       return;
     }

@@ -98,7 +98,7 @@ struct System {
     return std::llround(changes_frequency() ? drive.time_at(cycles) / dt
                                             : cycles * static_cast<double>(steps_per_period));
   }
-  /// Whether the frequency of the drive changes, so that a cycle is no fixed number of steps.
+  /// Whether the frequency of the drive changes, so that a cycle has no fixed number of steps.
   [[nodiscard]] bool changes_frequency() const { return drive.ramp && drive.ramp->changes_frequency(); }
 
  private:

@@ -171,8 +171,7 @@ TEST_F(DamagedRecords, CollectedResults) {
   put_file(file, whole.dump());
   const auto use = [&] {
     analysis::Comparison c;
-    std::vector<std::string> notes;
-    twin::add_sweep(file, c, notes);
+    twin::add_sweep(file, c);
   };
   use();
   std::size_t refusals = 0;
@@ -234,12 +233,13 @@ TEST_F(DamagedRecords, RecordsOfATrajectory) {
   };
   std::vector<std::string> notes;
   const auto use = [&] {
-    notes.clear();
     twin::ComparingOptions options;
     options.experiments = {at("e.h5")};
     options.film = false;
     const auto silent = [](const std::string&) { return std::make_unique<Progress>(); };
-    const analysis::Comparison c = twin::compare_runs(options, silent, notes);
+    const twin::NotedComparison noted = twin::compare_runs(options, silent);
+    notes = noted.notes;
+    const analysis::Comparison& c = noted.comparison;
     if (const auto& camera = c.runs.front().show.camera) {
       EXPECT_GT(camera->pixels_per_sigma, 0);
       EXPECT_GT(camera->width, 0);

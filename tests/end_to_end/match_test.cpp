@@ -264,7 +264,7 @@ TEST(Match, MeasuresTheDriveThatTheCellDoesNotState) {
   EXPECT_EQ(first.phase, 0);
 }
 
-TEST(Match, AStatedDriveIsHeldAgainstThePlate) {
+TEST(Match, StatedDriveIsCheckedAgainstThePlate) {
   const TemporaryFolder folder;
   std::ifstream in(kStack / "CELL.toml");
   const fs::path cell = folder / "wrong.toml";
@@ -424,7 +424,7 @@ TEST(Match, AFilmThatIsNamedTwiceIsRefusedBeforeAnyWork) {
   EXPECT_FALSE(fs::exists(folder / "twins"));
 }
 
-TEST(Match, AStatedDriveIsHeldAgainstTheBedWhereThePlateIsNotInThePicture) {
+TEST(Match, StatedDriveIsCheckedAgainstTheBedIfThePlateIsNotVisible) {
   for (const double gamma : {0.9, 1.6}) {
     const TemporaryFolder folder;
     const fs::path stack = film_above_plate(folder, gamma, 1);
@@ -453,7 +453,7 @@ TEST(Match, AStatedDriveIsHeldAgainstTheBedWhereThePlateIsNotInThePicture) {
   }
 }
 
-TEST(Match, ASecondHarmonicIsHeldAgainstThePlate) {
+TEST(Match, SecondHarmonicIsCheckedAgainstThePlate) {
   const TemporaryFolder folder;
   const fs::path run = folder / "run.h5", stack = folder / "frames";
   ASSERT_EQ(
@@ -514,12 +514,12 @@ TEST(Match, ABedAtRestContradictsAStatedAmplitude) {
       << analysed.err;
 }
 
-TEST(Match, AStatedFrequencyIsHeldAgainstThePlate) {
+TEST(Match, StatedFrequencyIsCheckedAgainstThePlate) {
   for (const StatedDrive& stated : stated_drives())
     expect_the_drive_checked(kStack, stated, "the plate in the frames");
 }
 
-TEST(Match, ADriveInLaboratoryUnitsIsHeldAgainstTheBed) {
+TEST(Match, DriveInLaboratoryUnitsIsCheckedAgainstTheBed) {
   const TemporaryFolder folder;
   const fs::path stack = film_above_plate(folder, 0.9, 1);
   const auto all = stated_drives();

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/laws/law_words.hpp"
 #include "sim/scene/plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "sim/start/start.hpp"

@@ -177,7 +177,7 @@ int cuLaunchKernel(void* function, unsigned grid_x, unsigned grid_y, unsigned gr
                    unsigned block_y, unsigned block_z, unsigned, void* stream, void** arguments, void**) {
   if (!has_context) return no_context;
   if (stream == nullptr) return failed;  // it would wait for all others
-  if (grid_y * grid_z * block_y * block_z != 1 || block_x > twincell::sim::kMostThreads) return failed;
+  if (grid_y * grid_z * block_y * block_z != 1 || block_x > twincell::sim::kMaxThreads) return failed;
   const auto* beds = reinterpret_cast<const DeviceBed*>(*static_cast<unsigned long long*>(arguments[0]));
   const auto* kernel = static_cast<const DeviceKernel*>(function);
   queue_of(stream).add([=] {

@@ -31,7 +31,7 @@ inline std::vector<std::string> refused_by(const KeyRule& rule) {
   const auto beside = [](const Bounds& bounds) {
     std::vector<double> out;
     if (bounds.lower) out.push_back(bounds.open_lower ? *bounds.lower : *bounds.lower - 1);
-    constexpr double kLargestWritten = 1e18;  // a larger whole number is no TOML
+    constexpr double kLargestWritten = 1e18;  // a larger whole number is not valid TOML
     if (bounds.upper && *bounds.upper < kLargestWritten) out.push_back(2 * *bounds.upper + 1);
     return out;
   };

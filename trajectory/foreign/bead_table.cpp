@@ -176,7 +176,7 @@ class TableReader final : public PictureBeadsReader {
 };
 
 /// The first line of a table with these columns.
-std::string heading_of(const SnapshotColumns& has, bool is_3d) {
+std::string heading_of(const ForeignColumns& has, bool is_3d) {
   std::string text = "frame,particle";
   const auto add = [&](const char* name) {
     for (const char* axis : {"x", "y", "z"})
@@ -199,7 +199,7 @@ const std::string& all_headings() {
     std::string lines;
     for (unsigned bits = 0; bits < 1U << 7; ++bits) {
       const auto bit = [&](unsigned k) { return (bits >> k & 1U) != 0; };
-      SnapshotColumns has;
+      ForeignColumns has;
       has.phase = bit(0), has.radius = bit(1), has.mass = bit(2), has.type = bit(3), has.uncertainty = bit(4);
       has.velocity.fill(bit(5));
       lines += heading_of(has, bit(6)) + '\n';
@@ -209,19 +209,19 @@ const std::string& all_headings() {
   return all;
 }
 
-class TableWriter final : public SnapshotWriter {
+class TableWriter final : public ForeignWriter {
  public:
   TableWriter(const std::filesystem::path& part, const WriteOptions& options)
       : out_(part), has_(options.columns), is_3d_(options.dimension == 3) {}
 
-  void append(const Snapshot& s) override {
+  void append(const ForeignFrame& s) override {
     if (n_frames_ == 0) out_.text() += heading_of(has_, is_3d_) + '\n';
     auto text = std::back_inserter(out_.text());
     const auto add = [&](const Vec3& v, double sign) {  // y vertical, z depth
       fmt::format_to(text, ",{},{}", v.x(), sign * (is_3d_ ? v.z() : v.y()) + 0.0);
       if (is_3d_) fmt::format_to(text, ",{}", v.y());
     };
-    for (const SnapshotBead& bead : s.beads) {
+    for (const ForeignBead& bead : s.beads) {
       fmt::format_to(text, "{},{}", n_frames_, bead.id);
       add(bead.position, -1);
       fmt::format_to(text, ",{},{}", s.step, s.time.value_or(0));
@@ -240,7 +240,7 @@ class TableWriter final : public SnapshotWriter {
 
  private:
   TextOutput out_;
-  SnapshotColumns has_;
+  ForeignColumns has_;
   bool is_3d_;
   std::int64_t n_frames_ = 0;
 };
@@ -253,9 +253,9 @@ const ForeignFormat bead_table_format = {
     .extensions = ".csv",
     .help = "table with trackpy's columns frame, particle, x, y (y downwards): trackpy, pandas, spreadsheets",
     .open = [](const std::filesystem::path& file, const ReadOptions& options)
-        -> std::unique_ptr<SnapshotReader> { return std::make_unique<TableReader>(file, options); },
+        -> std::unique_ptr<ForeignReader> { return std::make_unique<TableReader>(file, options); },
     .create = [](const std::filesystem::path& part, const WriteOptions& options)
-        -> std::unique_ptr<SnapshotWriter> { return std::make_unique<TableWriter>(part, options); },
+        -> std::unique_ptr<ForeignWriter> { return std::make_unique<TableWriter>(part, options); },
     .mark = all_headings(),
     .mark_is_first_line = true,
     .source = "unknown"};

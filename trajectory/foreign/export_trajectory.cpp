@@ -11,13 +11,13 @@ namespace twincell {
 
 namespace {
 
-/// Converts a vector from the axes of Box to those of Snapshot.
+/// Converts a vector from the axes of Box to those of ForeignFrame.
 Vec3 turned(const Vec3& v, int dimension) {
   return dimension == 2 ? Vec3(v.x(), v.z(), -v.y() + 0.0) : v;
 }
 
-SnapshotColumns columns_of(const TrajectoryInfo& info) {
-  SnapshotColumns has;
+ForeignColumns columns_of(const TrajectoryInfo& info) {
+  ForeignColumns has;
   has.type = !info.tracer.empty();
   has.radius = !info.radius.empty();
   has.mass = !info.mass.empty();
@@ -29,7 +29,7 @@ SnapshotColumns columns_of(const TrajectoryInfo& info) {
   return has;
 }
 
-void set_box(Snapshot& s, const TrajectoryInfo& info, const ExportUnits& units) {
+void set_box(ForeignFrame& s, const TrajectoryInfo& info, const ExportUnits& units) {
   const Box& box = info.box;
   Vec3 lower = box.lower, upper = box.upper;
   if (info.drive && !box.periodic(info.drive->axis)) {
@@ -54,7 +54,7 @@ void set_box(Snapshot& s, const TrajectoryInfo& info, const ExportUnits& units) 
   s.upper *= units.length;
 }
 
-void add_contacts(Snapshot& s, const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units) {
+void add_contacts(ForeignFrame& s, const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units) {
   const int dimension = info.box.dimension;
   const auto radius = [&](std::int32_t bead) {
     return radius_of(info.radius, static_cast<std::size_t>(bead));
@@ -94,10 +94,10 @@ ExportUnits ExportUnits::laboratory(const TrajectoryInfo& info, const std::strin
           .time_unit = numbered ? "frame" : "s"};
 }
 
-Snapshot snapshot_of(const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units,
-                     const std::vector<std::vector<double>>& numbers) {
+ForeignFrame foreign_frame_of(const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units,
+                              const std::vector<std::vector<double>>& numbers) {
   const int dimension = info.box.dimension;
-  Snapshot s;
+  ForeignFrame s;
   s.step = frame.step;
   s.time = frame.time * units.time;
   if (info.columns.phase && frame.phase >= 0) s.phase = frame.phase;
@@ -108,7 +108,7 @@ Snapshot snapshot_of(const Frame& frame, const TrajectoryInfo& info, const Expor
   s.numbers.resize(numbers.size());
   for (std::size_t i = 0; i < info.n_beads; ++i) {
     if (!frame.present(i) || !frame.position[i].allFinite()) continue;
-    SnapshotBead bead;
+    ForeignBead bead;
     bead.id = static_cast<std::int64_t>(i);
     bead.type = !info.tracer.empty() && info.tracer[i] != 0 ? 2 : 1;
     bead.radius = info.radius.empty() ? 0 : info.radius[i] * units.length;
@@ -137,7 +137,7 @@ std::size_t export_trajectory(const TrajectorySource& source, const ForeignForma
                               const std::string& stem, Progress& progress, const BeadNumbers& numbers) {
   const TrajectoryInfo& info = source.info();
   const bool more = format.numbers && numbers.of;
-  SnapshotColumns columns = columns_of(info);
+  ForeignColumns columns = columns_of(info);
   if (more) columns.numbers = numbers.names;
   const auto writer = format.create(part, {.dimension = info.box.dimension,
                                            .columns = columns,
@@ -148,7 +148,7 @@ std::size_t export_trajectory(const TrajectorySource& source, const ForeignForma
   for (std::size_t t = 0; t < source.n_frames(); ++t) {
     source.read(t, frame);
     writer->append(
-        snapshot_of(frame, info, units, more ? numbers.of(frame) : std::vector<std::vector<double>>{}));
+        foreign_frame_of(frame, info, units, more ? numbers.of(frame) : std::vector<std::vector<double>>{}));
     progress.update(static_cast<std::int64_t>(t + 1), static_cast<std::int64_t>(source.n_frames()));
   }
   writer->finish();

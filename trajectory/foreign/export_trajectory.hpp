@@ -33,12 +33,12 @@ struct BeadNumbers {
   std::function<std::vector<std::vector<double>>(const Frame&)> of;
 };
 
-/// The frame as a snapshot: axes of Snapshot, beads that are present, id = slot, type 1 or, for tracers, 2.
+/// The frame in the axes of ForeignFrame: beads that are present, id = slot, type 1 or, for tracers, 2.
 /// The box is that of the cell, lower by the amplitude of the drive along its axis, and wider where the
 /// centre of a bead lies beyond it.
 /// \param numbers BeadNumbers::of the frame
-Snapshot snapshot_of(const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units,
-                     const std::vector<std::vector<double>>& numbers = {});
+ForeignFrame foreign_frame_of(const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units,
+                              const std::vector<std::vector<double>>& numbers = {});
 
 /// Writes all frames to `part`, a file or a folder, with `numbers` if the format carries them. \returns the
 /// number of frames \throws RunError if it cannot be written

@@ -39,16 +39,16 @@ std::map<std::string, std::string> pairs_of(std::string_view line) {
   return pairs;
 }
 
-class XyzReader final : public SnapshotReader {
+class XyzReader final : public ForeignReader {
  public:
   XyzReader(const std::filesystem::path& file, const ReadOptions& options)
-      : SnapshotReader(file), in_(file), dimension_(options.dimension) {}
+      : ForeignReader(file), in_(file), dimension_(options.dimension) {}
 
-  bool next(Snapshot& s) override {
+  bool next(ForeignFrame& s) override {
     do {
       if (!in_.next()) return false;
     } while (in_.line().find_first_not_of(" \t\r") == std::string::npos);
-    s = Snapshot{};
+    s = ForeignFrame{};
     s.line = in_.number();
     s.step = n_frames_++;
     split_words(in_.line(), words_);
@@ -67,7 +67,7 @@ class XyzReader final : public SnapshotReader {
     return true;
   }
   [[nodiscard]] std::string length_unit() const override { return length_unit_; }
-  [[nodiscard]] const SnapshotColumns& columns() const override { return has_; }
+  [[nodiscard]] const ForeignColumns& columns() const override { return has_; }
   [[nodiscard]] std::string assumption() const override {
     return states_no_pbc_
                ? "the file states Lattice without pbc: by the rule of extended XYZ the box is periodic "
@@ -88,7 +88,7 @@ class XyzReader final : public SnapshotReader {
   [[nodiscard]] std::int64_t whole(std::string_view word) const { return whole_at(in_.number(), word); }
   [[nodiscard]] double number(std::string_view word) const { return number_at(in_.number(), word); }
 
-  void read_head(Snapshot& s) {
+  void read_head(ForeignFrame& s) {
     const auto pairs = pairs_of(in_.line());
     const auto value = [&](std::initializer_list<const char*> names) -> const std::string* {
       for (const char* name : names)
@@ -106,7 +106,8 @@ class XyzReader final : public SnapshotReader {
     place_columns(properties ? *properties : "species:S:1:pos:R:3");
   }
 
-  void read_box(Snapshot& s, const std::string* lattice, const std::string* origin, const std::string* pbc) {
+  void read_box(ForeignFrame& s, const std::string* lattice, const std::string* origin,
+                const std::string* pbc) {
     has_box_ = lattice != nullptr;
     if (!lattice) return;
     split_words(*lattice, words_);
@@ -183,7 +184,7 @@ class XyzReader final : public SnapshotReader {
     has_.spin.fill(spin_ != nullptr);
   }
 
-  void read_bead(std::int64_t i, Snapshot& s) {
+  void read_bead(std::int64_t i, ForeignFrame& s) {
     if (!in_.next()) fail(fmt::format("the file ends within a frame, before bead {}.", i + 1));
     split_words(in_.line(), words_);
     if (words_.size() != n_words_)
@@ -192,7 +193,7 @@ class XyzReader final : public SnapshotReader {
     const auto three = [&](const Property* p) {
       return Vec3(number(words_[p->first]), number(words_[p->first + 1]), number(words_[p->first + 2]));
     };
-    SnapshotBead bead;
+    ForeignBead bead;
     bead.line = in_.number();
     bead.id = id_ ? whole(words_[id_->first]) : i;
     if (type_) bead.type = static_cast<long>(whole(words_[type_->first]));
@@ -214,7 +215,7 @@ class XyzReader final : public SnapshotReader {
   std::size_t n_words_ = 0;
   const Property *position_ = nullptr, *id_ = nullptr, *radius_ = nullptr, *mass_ = nullptr, *type_ = nullptr,
                  *velocity_ = nullptr, *spin_ = nullptr;
-  SnapshotColumns has_;
+  ForeignColumns has_;
   std::string length_unit_;
   bool has_box_ = false, states_no_pbc_ = false;
   std::int64_t n_beads_ = 0;
@@ -224,12 +225,12 @@ class XyzReader final : public SnapshotReader {
 constexpr const char* kCreator = "creator=twincell";
 
 /// The species is X, ASE's symbol of no element; tracers have type 2.
-class XyzWriter final : public SnapshotWriter {
+class XyzWriter final : public ForeignWriter {
  public:
   XyzWriter(const std::filesystem::path& part, const WriteOptions& options)
       : out_(part), has_(options.columns), options_(options) {}
 
-  void append(const Snapshot& s) override {
+  void append(const ForeignFrame& s) override {
     auto text = std::back_inserter(out_.text());
     const Vec3 size = s.upper - s.lower;
     fmt::format_to(text, "{}\nLattice=\"{} 0 0 0 {} 0 0 0 {}\" Origin=\"{} {} {}\" pbc=\"{} {} {}\"",
@@ -251,7 +252,7 @@ class XyzWriter final : public SnapshotWriter {
     out_.text() += '\n';
     const auto add = [&](const Vec3& v) { fmt::format_to(text, " {} {} {}", v[0], v[1], v[2]); };
     for (std::size_t i = 0; i < s.beads.size(); ++i) {
-      const SnapshotBead& bead = s.beads[i];
+      const ForeignBead& bead = s.beads[i];
       out_.text() += 'X';
       add(bead.position);  // first, where readers of plain XYZ expect it
       fmt::format_to(text, " {}", bead.id);
@@ -269,7 +270,7 @@ class XyzWriter final : public SnapshotWriter {
 
  private:
   TextOutput out_;
-  SnapshotColumns has_;
+  ForeignColumns has_;
   WriteOptions options_;
 };
 
@@ -281,9 +282,9 @@ const ForeignFormat extended_xyz_format = {
     .extensions = ".xyz .extxyz",
     .help = "extended XYZ: OVITO, ASE, MDAnalysis",
     .open = [](const std::filesystem::path& file, const ReadOptions& options)
-        -> std::unique_ptr<SnapshotReader> { return std::make_unique<XyzReader>(file, options); },
+        -> std::unique_ptr<ForeignReader> { return std::make_unique<XyzReader>(file, options); },
     .create = [](const std::filesystem::path& part, const WriteOptions& options)
-        -> std::unique_ptr<SnapshotWriter> { return std::make_unique<XyzWriter>(part, options); },
+        -> std::unique_ptr<ForeignWriter> { return std::make_unique<XyzWriter>(part, options); },
     .numbers = true,
     .mark = kCreator};
 

@@ -23,29 +23,95 @@ namespace {
 }
 
 /// Median distance to the nearest other bead (spacing.hpp) within one period.
-double spacing_of(const Snapshot& s) {
+double spacing_of(const ForeignFrame& s) {
   Box period{.lower = s.lower, .upper = s.upper};
   for (std::size_t k = 0; k < 3; ++k)
     period.boundary[k] =
         s.periodic[k] && period.size()[static_cast<int>(k)] > 0 ? Boundary::periodic : Boundary::open;
   std::vector<Vec3> centres;
   centres.reserve(s.beads.size());
-  for (const SnapshotBead& b : s.beads) centres.push_back(period.wrap(b.position));
+  for (const ForeignBead& b : s.beads) centres.push_back(period.wrap(b.position));
   return median_spacing(centres);
 }
 
-/// Reads the next snapshot and sorts its beads by id. \throws InputError if an id occurs twice
-bool next_sorted(SnapshotReader& reader, Snapshot& s) {
+/// Reads the next frame and sorts its beads by id. \throws InputError if an id occurs twice
+bool next_sorted(ForeignReader& reader, ForeignFrame& s) {
   if (!reader.next(s)) return false;
   std::stable_sort(s.beads.begin(), s.beads.end(),
-                   [](const SnapshotBead& a, const SnapshotBead& b) { return a.id < b.id; });
+                   [](const ForeignBead& a, const ForeignBead& b) { return a.id < b.id; });
   const auto twice =
       std::adjacent_find(s.beads.begin(), s.beads.end(),
-                         [](const SnapshotBead& a, const SnapshotBead& b) { return a.id == b.id; });
+                         [](const ForeignBead& a, const ForeignBead& b) { return a.id == b.id; });
   if (twice != s.beads.end())
     reader.fail_at(std::next(twice)->line,
                    fmt::format("the bead with id {} occurs twice in a frame.", twice->id));
   return true;
+}
+
+/// What the frames state about one bead.
+struct SeenBead {
+  double radius, mass;  ///< mean of the radii, sigma; first mass
+  bool tracer;
+  double least, most;  ///< radii, sigma
+  long type;
+  double n = 1;  ///< frames
+};
+
+/// The beads of all frames.
+struct SeenBeads {
+  std::map<std::int64_t, SeenBead> of_id;
+  std::optional<std::size_t> fewest;  ///< beads in a frame
+
+  void add(const ForeignFrame& s, const ForeignOptions& o, std::optional<long> tracer_type) {
+    for (const ForeignBead& a : s.beads) {
+      const SeenBead bead{a.radius / o.sigma,    a.mass / o.bead_mass.value_or(1),
+                          tracer_type == a.type, a.radius / o.sigma,
+                          a.radius / o.sigma,    a.type};
+      const auto [at, is_new] = of_id.emplace(a.id, bead);
+      if (is_new) continue;
+      SeenBead& known = at->second;
+      known.radius += (bead.radius - known.radius) / ++known.n;  // equal radii stay equal to the bit
+      known.least = std::min(known.least, bead.radius);
+      known.most = std::max(known.most, bead.radius);
+    }
+    fewest = std::min(fewest.value_or(s.beads.size()), s.beads.size());
+  }
+};
+
+/// Complaint about radii that change; empty if each bead keeps its own.
+std::string changing_radii(const SeenBeads& seen) {
+  constexpr double kSameSize = 0.1;  // sizes that a tracker measures vary from frame to frame
+  if (!std::ranges::any_of(seen.of_id, [](const auto& bead) {
+        return bead.second.most - bead.second.least > kSameSize * bead.second.radius;
+      }))
+    return {};
+  return "the radii of beads change by more than a tenth from frame to frame: each has its mean.";
+}
+
+/// Complaint about masses that are not read; empty if all are equal.
+std::string unread_masses(const SeenBeads& seen) {
+  constexpr double kSameMass = 1e-6;  // of single precision
+  if (seen.of_id.empty()) return {};
+  const auto lighter = [](const auto& a, const auto& b) { return a.second.mass < b.second.mass; };
+  const auto [least, most] = std::minmax_element(seen.of_id.begin(), seen.of_id.end(), lighter);
+  if (!(most->second.mass > (1 + kSameMass) * least->second.mass)) return {};
+  return fmt::format(
+      "the masses of the file, {:.6g} to {:.6g}, are not read, because their unit "
+      "is not known (--bead-mass; 1 for a file that twincell exported).",
+      least->second.mass, most->second.mass);
+}
+
+/// Complaint about types none of which marks tracers; empty if all beads have the same.
+std::string unused_types(const SeenBeads& seen) {
+  constexpr std::size_t kMaxNamedTypes = 4;
+  std::map<long, std::size_t> beads_of_type;
+  for (const auto& [id, bead] : seen.of_id) ++beads_of_type[bead.type];
+  if (beads_of_type.size() <= 1) return {};
+  std::vector<std::string> words;
+  for (const auto& [type, beads] : beads_of_type) words.push_back(fmt::format("{} of type {}", beads, type));
+  return fmt::format("the file has beads of {} types{}, and none is taken for a tracer (--tracer-type).",
+                     words.size(),
+                     words.size() > kMaxNamedTypes ? "" : fmt::format(" ({})", fmt::join(words, ", ")));
 }
 
 }  // namespace
@@ -54,7 +120,7 @@ struct ForeignTrajectory::Impl {
   std::filesystem::path path;
   const ForeignFormat* format = nullptr;
   ForeignOptions o;
-  Vec3 origin = Vec3::Zero();  ///< in the axes of Snapshot
+  Vec3 origin = Vec3::Zero();  ///< in the axes of ForeignFrame
   TrajectoryInfo info;
   std::size_t n_frames = 0;
   std::vector<std::int64_t> ids;  ///< of the slots, ascending
@@ -67,16 +133,16 @@ struct ForeignTrajectory::Impl {
   double step_distance = 0, step_range = 0;  ///< smallest between two frames; first to last
   double spacing = 0;                        ///< of the beads of the first frame, sigma
   std::size_t beyond = 0;                    ///< beads of the first frame beside the cell
-  PositionExtent extent;                     ///< of all beads and frames, axes and unit of Snapshot
+  PositionExtent extent;                     ///< of all beads and frames, axes and unit of ForeignFrame
   std::string assumption, length_unit;
 
-  /// Converts a vector from the axes of Snapshot to those of Box. In 2D, y of the snapshot is our z, and -z
+  /// Converts a vector from the axes of ForeignFrame to those of Box. In 2D, its y is our z, and its -z
   /// is our y.
   [[nodiscard]] Vec3 turned(const Vec3& v) const {
     return o.dimension == 2 ? Vec3(v.x(), -v.z() + 0.0, v.y()) : v;
   }
 
-  [[nodiscard]] std::unique_ptr<SnapshotReader> open() const {
+  [[nodiscard]] std::unique_ptr<ForeignReader> open() const {
     return format->open(path, {.dimension = o.dimension, .columns = o.table_columns, .y_up = o.y_up});
   }
 
@@ -107,8 +173,15 @@ struct ForeignTrajectory::Impl {
       refuse("--frames-per-cycle", "has no meaning without the drive, whose period is then unknown.");
   }
 
-  /// First pass: checks a snapshot against the options and the first snapshot, and extends the box.
-  void learn(const SnapshotReader& reader, const Snapshot& s, const Snapshot& first) {
+  /// First pass: the origin of a cell with periods is where these begin.
+  void begin(const ForeignFrame& first) {
+    for (int k = 0; k < 3; ++k)
+      if (!o.origin && first.periodic[static_cast<std::size_t>(k)]) origin[k] = first.lower[k];
+    info.box.lower = Vec3::Zero();
+  }
+
+  /// First pass: checks a frame against the options and the first frame, and extends the box.
+  void learn(const ForeignReader& reader, const ForeignFrame& s, const ForeignFrame& first) {
     if (!o.timestep && !s.time)
       refuse("--timestep", fmt::format("{} does not state the length of a step.", path.string()));
     for (int k = 0; k < 3; ++k) {
@@ -123,17 +196,17 @@ struct ForeignTrajectory::Impl {
       reader.fail_at(s.line, fmt::format("time {:g} of a frame comes after time {:g}; times must increase.",
                                          *s.time, *time_before));
     time_before = s.time;
-    for (const SnapshotBead& a : s.beads) {
+    for (const ForeignBead& a : s.beads) {
       if (!((a.position - origin).cwiseAbs().maxCoeff() <= kFarthestPosition * o.sigma))
         reader.fail_at(a.line,
                        fmt::format("bead {} is at ({:g}, {:g}, {:g}), farther than {:g} bead diameters "
                                    "from the origin of the cell.",
                                    a.id, a.position.x(), a.position.y(), a.position.z(), kFarthestPosition));
       extent.add(a.position);
-      constexpr double kFlat = 1e-9;
+      constexpr double kSamePlane_sigma = 1e-9;
       if (!first_position) first_position = a.position;
       for (const int k : {1, 2})
-        if (std::abs(a.position[k] - (*first_position)[k]) > kFlat * o.sigma) flat[k - 1] = false;
+        if (std::abs(a.position[k] - (*first_position)[k]) > kSamePlane_sigma * o.sigma) flat[k - 1] = false;
       if (o.dimension == 2 && !flat[1])
         reader.fail_at(a.line, fmt::format("bead {} is at z = {:g}, not in the plane z = {:g} of the first "
                                            "bead; is this a three-dimensional system (--dimension 3)?",
@@ -146,33 +219,73 @@ struct ForeignTrajectory::Impl {
     info.box.upper = n_frames == 0 ? upper : Vec3(info.box.upper.cwiseMax(upper));
   }
 
+  /// First pass: checks that the steps increase, and enters their distances.
+  /// \param[in,out] before its step is that of the frame before, and becomes that of this frame
+  void follow_steps(const ForeignReader& reader, const ForeignFrame& s, ForeignFrame& before) {
+    if (n_frames > 0 && s.step <= before.step)
+      reader.fail_at(s.line, fmt::format("step {} comes after step {}.", s.step, before.step));
+    if (n_frames > 0) {
+      const double distance = static_cast<double>(s.step) - static_cast<double>(before.step);
+      step_distance = step_distance > 0 ? std::min(step_distance, distance) : distance;
+      step_range += distance;
+    }
+    before.step = s.step;
+    if (o.phases_per_cycle > 0) {
+      const std::int64_t n = phase_count(reader, s), per_cycle = o.phases_per_cycle;
+      if (n_frames == 0) first_cycle = (n - (n % per_cycle + per_cycle) % per_cycle) / per_cycle;
+    }
+  }
+
   /// Number of phases since the start of the cycle that contains step 0.
-  /// \throws InputError if the snapshot is between two phases
-  [[nodiscard]] std::int64_t phase_count(const SnapshotReader& reader, const Snapshot& s) const {
-    constexpr double kBetween = 0.05;
+  /// \throws InputError if the frame is between two phases
+  [[nodiscard]] std::int64_t phase_count(const ForeignReader& reader, const ForeignFrame& s) const {
+    constexpr double kMaxPhaseError = 0.05;
     const double phases = cycles(s) * o.phases_per_cycle, nearest = std::round(phases);
-    if (std::abs(phases - nearest) > kBetween || std::abs(phases) > 1e15)
+    if (std::abs(phases - nearest) > kMaxPhaseError || std::abs(phases) > 1e15)
       reader.fail_at(s.line,
                      fmt::format("step {} is at {:.4f} cycles, not at one of {} phases of a cycle; check the "
                                  "time step, the drive and the frames per cycle.",
                                  s.step, cycles(s), o.phases_per_cycle));
     return static_cast<std::int64_t>(nearest);
   }
-  [[nodiscard]] double time(const Snapshot& s) const {
+  [[nodiscard]] double time(const ForeignFrame& s) const {
     return (o.timestep ? static_cast<double>(s.step) * *o.timestep : s.time.value_or(0)) / t0;
   }
-  [[nodiscard]] double cycles(const Snapshot& s) const {
+  [[nodiscard]] double cycles(const ForeignFrame& s) const {
     return time(s) / info.drive->period() + o.phase_of_step_zero;
   }
 
   /// Type that marks tracers: that of the options, or of a file that marks them itself.
-  [[nodiscard]] std::optional<long> tracer_type(const SnapshotColumns& columns) const {
+  [[nodiscard]] std::optional<long> tracer_type(const ForeignColumns& columns) const {
     return columns.tracer && !o.tracer_type ? std::optional(2L) : o.tracer_type;
+  }
+
+  /// End of the first pass: gives every bead a slot, in the order of the ids.
+  void make_slots(const SeenBeads& seen) {
+    for (const auto& [id, bead] : seen.of_id) {
+      ids.push_back(id);
+      info.radius.push_back(bead.radius);
+      info.mass.push_back(bead.mass);
+      info.tracer.push_back(bead.tracer ? 1 : 0);
+    }
+    info.columns.identity = *seen.fewest < ids.size();
+  }
+
+  /// End of the first pass: says what was assumed where the file is silent or its numbers are not used.
+  void state_assumptions(const ForeignReader& reader, const SeenBeads& seen) {
+    const ForeignColumns& columns = reader.columns();
+    assumption = reader.assumption();
+    const auto add = [&](const std::string& sentence) {
+      if (!sentence.empty()) assumption += std::string(assumption.empty() ? "" : " ") + sentence;
+    };
+    if (columns.radius) add(changing_radii(seen));
+    if (columns.mass && !o.bead_mass) add(unread_masses(seen));
+    if (columns.type && !tracer_type(columns)) add(unused_types(seen));
   }
 
   /// End of the first pass: sets columns, box and boundaries.
   /// \param y_down whether y of the file increases downwards
-  void complete(const Snapshot& first, const SnapshotColumns& columns, bool y_down) {
+  void complete(const ForeignFrame& first, const ForeignColumns& columns, bool y_down) {
     info.n_beads = ids.size();
     info.source = o.source.empty() ? format->source : o.source;
     const auto all = [&](const std::array<bool, 3>& of) {
@@ -197,7 +310,7 @@ struct ForeignTrajectory::Impl {
     spacing = spacing_of(first) / o.sigma;
     if (info.box.boundary[0] == Boundary::wall)
       beyond = static_cast<std::size_t>(
-          std::count_if(first.beads.begin(), first.beads.end(), [&](const SnapshotBead& a) {
+          std::count_if(first.beads.begin(), first.beads.end(), [&](const ForeignBead& a) {
             const double x = (a.position.x() - origin.x()) / o.sigma;
             return x < 0 || x > info.box.upper.x();
           }));
@@ -217,7 +330,7 @@ struct ForeignTrajectory::Impl {
   }
 
   /// Period of each axis along which the positions are wrapped; 0 along the others.
-  [[nodiscard]] Vec3 wrapping(const Snapshot& s, const SnapshotColumns& columns) const {
+  [[nodiscard]] Vec3 wrapping(const ForeignFrame& s, const ForeignColumns& columns) const {
     Vec3 period = Vec3::Zero();
     for (int k = 0; k < 3; ++k) {
       const auto axis = static_cast<std::size_t>(k);
@@ -228,14 +341,14 @@ struct ForeignTrajectory::Impl {
     return period;
   }
 
-  [[nodiscard]] std::size_t slot_of(const SnapshotReader& reader, const SnapshotBead& a) const {
+  [[nodiscard]] std::size_t slot_of(const ForeignReader& reader, const ForeignBead& a) const {
     const auto at = std::lower_bound(ids.begin(), ids.end(), a.id);
     if (at == ids.end() || *at != a.id) reader.fail_at(a.line, "the file changed while it was read.");
     return static_cast<std::size_t>(at - ids.begin());
   }
 
-  /// Second pass: converts a snapshot to a frame with slots, unwrapped coordinates and reduced units.
-  void fill(const SnapshotReader& reader, const Snapshot& s, PeriodCounter& periods, Frame& frame) const {
+  /// Second pass: converts a foreign frame to a Frame with slots, unwrapped coordinates and reduced units.
+  void fill(const ForeignReader& reader, const ForeignFrame& s, PeriodCounter& periods, Frame& frame) const {
     frame.step = s.step;
     frame.time = time(s);
     if (info.drive) {
@@ -254,7 +367,7 @@ struct ForeignTrajectory::Impl {
     frame.spin.assign(info.columns.spin ? ids.size() : 0, nowhere);
     frame.position_sigma.assign(info.columns.position_sigma ? ids.size() : 0, nowhere);
     frame.id.assign(info.columns.identity ? ids.size() : 0, -1);
-    for (const SnapshotBead& a : s.beads) {
+    for (const ForeignBead& a : s.beads) {
       const std::size_t slot = slot_of(reader, a);
       const Vec3 r = periods.unwrapped(slot, a.position);
       frame.position[slot] = turned(r - origin) / o.sigma;
@@ -279,95 +392,25 @@ ForeignTrajectory::ForeignTrajectory(const std::filesystem::path& path, const Fo
   d.o = options;
   d.check_options();
   const auto source = d.open();
-  SnapshotReader& reader = *source;
+  ForeignReader& reader = *source;
   if (d.o.origin) d.origin = reader.upright(*d.o.origin);
-  struct Bead {
-    double radius, mass;  ///< mean of the radii; first mass
-    bool tracer;
-    double least, most;  ///< radii
-    long type;
-    double n = 1;  ///< frames
-  };
-  std::map<std::int64_t, Bead> seen;
-  std::size_t fewest = 0;
-  Snapshot s, first;
+  SeenBeads seen;
+  ForeignFrame s, first;
   while (next_sorted(reader, s)) {
     if (d.n_frames == 0) {
       first = s;
-      fewest = s.beads.size();
-      for (int k = 0; k < 3; ++k)
-        if (!d.o.origin && s.periodic[static_cast<std::size_t>(k)]) d.origin[k] = s.lower[k];
-      d.info.box.lower = Vec3::Zero();
+      d.begin(first);
     }
     d.learn(reader, s, first);
-    if (d.n_frames > 0 && s.step <= first.step)
-      reader.fail_at(s.line, fmt::format("step {} comes after step {}.", s.step, first.step));
-    if (d.n_frames > 0) {
-      const double distance = static_cast<double>(s.step) - static_cast<double>(first.step);
-      d.step_distance = d.step_distance > 0 ? std::min(d.step_distance, distance) : distance;
-      d.step_range += distance;
-    }
-    first.step = s.step;
-    if (d.o.phases_per_cycle > 0) {
-      const std::int64_t n = d.phase_count(reader, s), per_cycle = d.o.phases_per_cycle;
-      if (d.n_frames == 0) d.first_cycle = (n - (n % per_cycle + per_cycle) % per_cycle) / per_cycle;
-    }
-    for (const SnapshotBead& a : s.beads) {
-      const Bead bead{a.radius / d.o.sigma,
-                      a.mass / d.o.bead_mass.value_or(1),
-                      d.tracer_type(reader.columns()) == a.type,
-                      a.radius / d.o.sigma,
-                      a.radius / d.o.sigma,
-                      a.type};
-      const auto [at, is_new] = seen.emplace(a.id, bead);
-      if (is_new) continue;
-      Bead& known = at->second;
-      known.radius += (bead.radius - known.radius) / ++known.n;  // equal radii stay equal to the bit
-      known.least = std::min(known.least, bead.radius);
-      known.most = std::max(known.most, bead.radius);
-    }
-    fewest = std::min(fewest, s.beads.size());
+    d.follow_steps(reader, s, first);
+    seen.add(s, d.o, d.tracer_type(reader.columns()));
     ++d.n_frames;
     progress.update(reader.done(), reader.size());
   }
   if (d.n_frames == 0) throw InputError({path.string(), 0, 0, ""}, "the file holds no frame.");
-  for (const auto& [id, bead] : seen) {
-    d.ids.push_back(id);
-    d.info.radius.push_back(bead.radius);
-    d.info.mass.push_back(bead.mass);
-    d.info.tracer.push_back(bead.tracer ? 1 : 0);
-  }
-  d.info.columns.identity = fewest < d.ids.size();
-  d.assumption = reader.assumption();
+  d.make_slots(seen);
   d.length_unit = reader.length_unit();
-  constexpr double kSameSize = 0.1;  // sizes that a tracker measures vary from frame to frame
-  if (reader.columns().radius && std::ranges::any_of(seen, [](const auto& bead) {
-        return bead.second.most - bead.second.least > kSameSize * bead.second.radius;
-      }))
-    d.assumption += std::string(d.assumption.empty() ? "" : " ") +
-                    "the radii of beads change by more than a tenth from frame to frame: each has its mean.";
-  const auto lighter = [](const auto& a, const auto& b) { return a.second.mass < b.second.mass; };
-  constexpr double kSameMass = 1e-6;  // of single precision
-  if (reader.columns().mass && !d.o.bead_mass)
-    if (const auto [least, most] = std::minmax_element(seen.begin(), seen.end(), lighter);
-        most->second.mass > (1 + kSameMass) * least->second.mass)
-      d.assumption += std::string(d.assumption.empty() ? "" : " ") +
-                      fmt::format(
-                          "the masses of the file, {:.6g} to {:.6g}, are not read, because their unit "
-                          "is not known (--bead-mass; 1 for a file that twincell exported).",
-                          least->second.mass, most->second.mass);
-  std::map<long, std::size_t> beads_of_type;
-  for (const auto& [id, bead] : seen) ++beads_of_type[bead.type];
-  if (reader.columns().type && !d.tracer_type(reader.columns()) && beads_of_type.size() > 1) {
-    constexpr std::size_t kFew = 4;
-    std::vector<std::string> words;
-    for (const auto& [type, beads] : beads_of_type)
-      words.push_back(fmt::format("{} of type {}", beads, type));
-    d.assumption +=
-        std::string(d.assumption.empty() ? "" : " ") +
-        fmt::format("the file has beads of {} types{}, and none is taken for a tracer (--tracer-type).",
-                    words.size(), words.size() > kFew ? "" : fmt::format(" ({})", fmt::join(words, ", ")));
-  }
+  d.state_assumptions(reader, seen);
   const Vec3 along_y = reader.upright(Vec3(0, 1, 0));
   d.complete(first, reader.columns(), along_y.minCoeff() < 0);
 }
@@ -416,8 +459,8 @@ std::size_t ForeignTrajectory::n_beyond() const {
 
 void ForeignTrajectory::copy_to(TrajectorySink& sink, Progress& progress) const {
   const auto source = impl_->open();
-  SnapshotReader& reader = *source;
-  Snapshot s;
+  ForeignReader& reader = *source;
+  ForeignFrame s;
   Frame frame;
   std::optional<PeriodCounter> periods;  // the box is that of the first frame
   while (next_sorted(reader, s)) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Converts files of other programs to trajectories, and trajectories to snapshots in their units and axes.
+/// Converts files of other programs to trajectories, and trajectories to frames in their units and axes.
 
 #include <cstddef>
 #include <cstdint>

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "trajectory/foreign/snapshot.hpp"
+#include "trajectory/foreign/foreign_frame.hpp"
 
 namespace twincell {
 
@@ -22,10 +22,10 @@ struct ReadOptions {
   bool y_up = false;  ///< y of a table increases upwards; otherwise downwards
 };
 
-/// What a writer knows before the first snapshot.
+/// What a writer knows before the first frame.
 struct WriteOptions {
   int dimension = 2;
-  SnapshotColumns columns;
+  ForeignColumns columns;
   std::string length_unit, time_unit;  ///< "sigma", "t0" or "mm", "s"
   std::string stem;                    ///< name of the output without its extension
 };
@@ -36,11 +36,11 @@ struct ForeignFormat {
   std::string_view extensions;  ///< by which a file is recognised, separated by blanks; the first is written
   std::string_view help;        ///< one line: what it is and which programs read it
   /// Null: the format is only written.
-  std::unique_ptr<SnapshotReader> (*open)(const std::filesystem::path& file, const ReadOptions& options);
+  std::unique_ptr<ForeignReader> (*open)(const std::filesystem::path& file, const ReadOptions& options);
   /// Null: the format is only read.
-  std::unique_ptr<SnapshotWriter> (*create)(const std::filesystem::path& part, const WriteOptions& options);
+  std::unique_ptr<ForeignWriter> (*create)(const std::filesystem::path& part, const WriteOptions& options);
   bool folder = false;   ///< the output is a folder with a file for each frame
-  bool numbers = false;  ///< it carries SnapshotColumns::numbers
+  bool numbers = false;  ///< it carries ForeignColumns::numbers
   /// Lines, one of which is in the first 4 KiB of every file that twincell writes in this format, and none in
   /// the files of other programs; empty: the format has no place for it.
   std::string_view mark;

@@ -61,7 +61,7 @@ constexpr Type type_of() {
   return Type::i64;
 }
 
-class GsdWriter final : public SnapshotWriter {
+class GsdWriter final : public ForeignWriter {
  public:
   GsdWriter(const std::filesystem::path& part, const WriteOptions& options)
       : file_(part),
@@ -71,7 +71,7 @@ class GsdWriter final : public SnapshotWriter {
     write(Header{});  // with its final values in finish()
   }
 
-  void append(const Snapshot& s) override {
+  void append(const ForeignFrame& s) override {
     const std::size_t n = s.beads.size();
     const Vec3 size = s.upper - s.lower, centre = 0.5 * (s.upper + s.lower);
     chunk<std::uint64_t>("configuration/step",
@@ -94,7 +94,7 @@ class GsdWriter final : public SnapshotWriter {
     std::vector<float> mass, diameter, position, velocity;
     std::vector<std::int32_t> image;
     std::vector<double> ids;
-    for (const SnapshotBead& bead : s.beads) {
+    for (const ForeignBead& bead : s.beads) {
       typeid_.push_back(bead.type == 2 ? 1 : 0);
       mass.push_back(static_cast<float>(bead.mass));
       diameter.push_back(static_cast<float>(2 * bead.radius));
@@ -180,26 +180,26 @@ class GsdWriter final : public SnapshotWriter {
 
   std::filesystem::path file_;
   std::ofstream out_;
-  SnapshotColumns has_;
+  ForeignColumns has_;
   bool is_2d_;
   std::uint64_t at_ = 0, frame_ = 0;
   std::vector<std::string> names_;
   std::vector<IndexEntry> index_;
 };
 
-class GsdReader final : public SnapshotReader {
+class GsdReader final : public ForeignReader {
  public:
   GsdReader(const std::filesystem::path& file, const ReadOptions& options)
-      : SnapshotReader(file),
+      : ForeignReader(file),
         in_(open_input(file)),
         size_(size_of_input(file)),
         is_2d_(options.dimension == 2) {
     read_index();
   }
 
-  bool next(Snapshot& s) override {
+  bool next(ForeignFrame& s) override {
     if (frame_ == n_frames_) return false;
-    s = Snapshot{};
+    s = ForeignFrame{};
     const auto step = numbers("configuration/step", 1, 1);
     s.step = step.empty() ? static_cast<std::int64_t>(frame_) : whole("configuration/step", step[0]);
     if (const auto time = numbers("log/configuration/time", 1, 1); !time.empty()) s.time = time[0];
@@ -221,7 +221,7 @@ class GsdReader final : public SnapshotReader {
     has_.wrapped.fill(!has_images_);  // frames without the chunk have images 0 if another frame has it
     const Vec3 size = s.upper - s.lower;
     for (std::size_t i = 0; i < n; ++i) {
-      SnapshotBead bead;
+      ForeignBead bead;
       bead.id = ids.empty() ? static_cast<std::int64_t>(i) : whole("log/particles/id", ids[i]);
       bead.type = types.empty() ? 1 : whole("particles/typeid", types[i]) + 1;
       bead.radius = diameter.empty() ? 0.5 : diameter[i] / 2;  // HOOMD's default diameter is 1
@@ -238,7 +238,7 @@ class GsdReader final : public SnapshotReader {
     ++frame_;
     return true;
   }
-  [[nodiscard]] const SnapshotColumns& columns() const override { return has_; }
+  [[nodiscard]] const ForeignColumns& columns() const override { return has_; }
   [[nodiscard]] std::int64_t size() const override { return static_cast<std::int64_t>(n_frames_); }
   [[nodiscard]] std::int64_t done() const override { return static_cast<std::int64_t>(frame_); }
 
@@ -356,7 +356,7 @@ class GsdReader final : public SnapshotReader {
   }
 
   /// Reads the box. \returns what is added to positions: the centre of the box, or 0 where the file has none
-  Vec3 read_box(Snapshot& s) {
+  Vec3 read_box(ForeignFrame& s) {
     const auto box = numbers("configuration/box", 6, 1);
     const auto flat = box.empty() ? std::vector<double>{1, 1, 1, 0, 0, 0} : box;
     if (flat[3] != 0 || flat[4] != 0 || flat[5] != 0) fail_at(0, "the box is not a cuboid along the axes.");
@@ -379,7 +379,7 @@ class GsdReader final : public SnapshotReader {
   bool is_2d_;
   std::vector<std::string> names_;
   std::map<std::pair<std::string, std::uint64_t>, IndexEntry> index_;
-  SnapshotColumns has_;
+  ForeignColumns has_;
   std::uint64_t frame_ = 0, n_frames_ = 0;
   bool has_images_ = false;  ///< a frame states how many periods beads have crossed
 };
@@ -392,9 +392,9 @@ const ForeignFormat gsd_format = {
     .extensions = ".gsd",
     .help = "GSD, schema hoomd, single precision: HOOMD-blue, freud, OVITO",
     .open = [](const std::filesystem::path& file, const ReadOptions& options)
-        -> std::unique_ptr<SnapshotReader> { return std::make_unique<GsdReader>(file, options); },
+        -> std::unique_ptr<ForeignReader> { return std::make_unique<GsdReader>(file, options); },
     .create = [](const std::filesystem::path& part, const WriteOptions& options)
-        -> std::unique_ptr<SnapshotWriter> { return std::make_unique<GsdWriter>(part, options); },
+        -> std::unique_ptr<ForeignWriter> { return std::make_unique<GsdWriter>(part, options); },
     .mark = kApplication};
 
 }  // namespace twincell

@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kIsbiMark = "<!-- tracks written by twincell -->";
 
-class IsbiWriter final : public SnapshotWriter {
+class IsbiWriter final : public ForeignWriter {
  public:
   IsbiWriter(const std::filesystem::path& part, const WriteOptions& options) : out_(part), options_(options) {
     // The challenge names its data by noise, density and scenario, which readers require and do not use.
@@ -26,8 +26,8 @@ class IsbiWriter final : public SnapshotWriter {
         kIsbiMark, html_text(options.stem));
   }
 
-  void append(const Snapshot& s) override {
-    for (const SnapshotBead& bead : s.beads) {
+  void append(const ForeignFrame& s) override {
+    for (const ForeignBead& bead : s.beads) {
       const Vec3 r = to_picture(bead.position, options_.dimension);
       fmt::format_to(std::back_inserter(track_of_[bead.id]),
                      "<detection t=\"{}\" x=\"{}\" y=\"{}\" z=\"{}\"/>\n", n_frames_, r.x(), r.y(), r.z());
@@ -60,7 +60,7 @@ const ForeignFormat isbi_format = {
     .help = "tracks of the ISBI challenge (y downwards): Icy, Fiji; read as trackmate",
     .open = nullptr,
     .create = [](const std::filesystem::path& part, const WriteOptions& options)
-        -> std::unique_ptr<SnapshotWriter> { return std::make_unique<IsbiWriter>(part, options); },
+        -> std::unique_ptr<ForeignWriter> { return std::make_unique<IsbiWriter>(part, options); },
     .mark = kIsbiMark};
 
 }  // namespace twincell

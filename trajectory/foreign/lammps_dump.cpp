@@ -37,12 +37,12 @@ struct ColumnPlaces {
 
 /// Columns and ids may be in any order. Required are `id` and per axis one of xu, xsu, x, xs (s: scaled by
 /// the box, u: unwrapped); optional are vx …, omegax …, radius or diameter, mass, type, ix ….
-class DumpReader final : public SnapshotReader {
+class DumpReader final : public ForeignReader {
  public:
   explicit DumpReader(const std::filesystem::path& path)
-      : SnapshotReader(path), in_(path), line_(in_.line()) {}
+      : ForeignReader(path), in_(path), line_(in_.line()) {}
 
-  bool next(Snapshot& s) override {
+  bool next(ForeignFrame& s) override {
     bool begun = false;
     s.time.reset();
     s.beads.clear();
@@ -91,7 +91,7 @@ class DumpReader final : public SnapshotReader {
     return false;
   }
 
-  [[nodiscard]] const SnapshotColumns& columns() const override { return has_; }
+  [[nodiscard]] const ForeignColumns& columns() const override { return has_; }
   [[nodiscard]] std::int64_t size() const override { return in_.size(); }
   [[nodiscard]] std::int64_t done() const override { return in_.done(); }
 
@@ -113,7 +113,7 @@ class DumpReader final : public SnapshotReader {
 
   /// Bounds of the box: `lo hi`; `lo hi tilt` after the words xy xz yz; or, after abc origin, an edge vector
   /// and a component of the corner. The tilts must be 0, and the edges along the axes.
-  void read_box(const std::string& flags, Snapshot& s) {
+  void read_box(const std::string& flags, ForeignFrame& s) {
     split_words(flags, words_);
     std::size_t first_flag = 0, needed = 2;
     if (words_.size() >= 3 && words_[0] == "xy" && words_[1] == "xz" && words_[2] == "yz")
@@ -185,14 +185,14 @@ class DumpReader final : public SnapshotReader {
     has_.mass = columns_.mass != kNoColumn;
   }
 
-  void read_atoms(std::size_t announced, Snapshot& s) {
+  void read_atoms(std::size_t announced, ForeignFrame& s) {
     const auto at = [&](int column) { return words_[static_cast<std::size_t>(column)]; };
     for (std::size_t i = 0; i < announced; ++i) {
       need_line("an atom");
       split_words(line_, words_);
       if (words_.size() != columns_.count)
         fail(fmt::format("{} columns are needed, {} were found.", columns_.count, words_.size()));
-      SnapshotBead a;
+      ForeignBead a;
       a.line = in_.number();
       a.id = whole(at(columns_.id));
       if (columns_.type != kNoColumn) a.type = static_cast<long>(whole(at(columns_.type)));
@@ -223,17 +223,17 @@ class DumpReader final : public SnapshotReader {
   std::string header_;
   std::vector<std::string_view> words_;
   ColumnPlaces columns_;
-  SnapshotColumns has_;
+  ForeignColumns has_;
 };
 
 /// Per frame: step, number of beads, box, and one line per bead. ITEM: UNITS and ITEM: TIME are left out,
 /// because MDAnalysis 2.4 rejects them; the time is step times the time step.
-class DumpWriter final : public SnapshotWriter {
+class DumpWriter final : public ForeignWriter {
  public:
   DumpWriter(const std::filesystem::path& part, const WriteOptions& options)
       : out_(part), has_(options.columns), is_2d_(options.dimension == 2) {}
 
-  void append(const Snapshot& s) override {
+  void append(const ForeignFrame& s) override {
     std::string& text = out_.text();
     fmt::format_to(std::back_inserter(text),
                    "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS", s.step, s.beads.size());
@@ -249,13 +249,13 @@ class DumpWriter final : public SnapshotWriter {
     if (has_.velocity[0]) text += " vx vy vz";
     if (has_.spin[2]) text += " omegax omegay omegaz";
     text += '\n';
-    for (const SnapshotBead& bead : s.beads) write(bead, s, counts_periods);
+    for (const ForeignBead& bead : s.beads) write(bead, s, counts_periods);
     out_.flush_if_large();
   }
   void finish() override { out_.close(); }
 
  private:
-  void write(const SnapshotBead& bead, const Snapshot& s, bool counts_periods) {
+  void write(const ForeignBead& bead, const ForeignFrame& s, bool counts_periods) {
     std::string& text = out_.text();
     fmt::format_to(std::back_inserter(text), "{} {}", bead.id + 1, bead.type);  // LAMMPS counts from 1
     if (has_.radius) fmt::format_to(std::back_inserter(text), " {}", bead.radius);
@@ -278,7 +278,7 @@ class DumpWriter final : public SnapshotWriter {
   void add(const Vec3& v) { fmt::format_to(std::back_inserter(out_.text()), " {} {} {}", v[0], v[1], v[2]); }
 
   TextOutput out_;
-  SnapshotColumns has_;
+  ForeignColumns has_;
   bool is_2d_;
 };
 
@@ -289,10 +289,10 @@ const ForeignFormat lammps_dump_format = {
     .word = "lammps-dump",
     .extensions = ".lammpstrj .dump",
     .help = "text dump of LAMMPS: LAMMPS (read_dump), OVITO, MDAnalysis, ASE, VMD",
-    .open = [](const std::filesystem::path& file, const ReadOptions&) -> std::unique_ptr<SnapshotReader> {
+    .open = [](const std::filesystem::path& file, const ReadOptions&) -> std::unique_ptr<ForeignReader> {
       return std::make_unique<DumpReader>(file);
     },
     .create = [](const std::filesystem::path& part, const WriteOptions& options)
-        -> std::unique_ptr<SnapshotWriter> { return std::make_unique<DumpWriter>(part, options); }};
+        -> std::unique_ptr<ForeignWriter> { return std::make_unique<DumpWriter>(part, options); }};
 
 }  // namespace twincell

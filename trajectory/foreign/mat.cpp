@@ -18,19 +18,19 @@ namespace twincell {
 namespace {
 
 constexpr const char* kHeader = "MATLAB 5.0 MAT-file, written by twincell";
-constexpr std::size_t kMostBytes = std::size_t{1} << 31;  // of a variable at level 5
+constexpr std::size_t kMaxBytes = std::size_t{1} << 31;  // of a variable at level 5
 
 constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
 
-class MatWriter final : public SnapshotWriter {
+class MatWriter final : public ForeignWriter {
  public:
   MatWriter(const std::filesystem::path& part, const WriteOptions& options)
       : part_(part), has_(options.columns), options_(options) {}
 
-  void append(const Snapshot& s) override {
-    for (const SnapshotBead& bead : s.beads)
+  void append(const ForeignFrame& s) override {
+    for (const ForeignBead& bead : s.beads)
       n_beads_ = std::max(n_beads_, static_cast<std::size_t>(bead.id) + 1);
-    if (8 * n_beads_ * (n_frames_ + 1) >= kMostBytes)
+    if (8 * n_beads_ * (n_frames_ + 1) >= kMaxBytes)
       throw RunError(
           fmt::format("{}: a matrix of {} beads and {} frames is larger than the 2 GB of a MAT-file; "
                       "export fewer frames, or to another format.",
@@ -44,7 +44,7 @@ class MatWriter final : public SnapshotWriter {
     frame("plate_height", s.plate_height.value_or(kAbsent));
     const int axes = options_.dimension;
     for (std::size_t k = 0; k < s.beads.size(); ++k) {
-      const SnapshotBead& b = s.beads[k];
+      const ForeignBead& b = s.beads[k];
       const auto id = static_cast<std::size_t>(b.id);
       vector("", axes, id, b.position);
       if (has_.velocity[0]) vector("v", axes, id, b.velocity);
@@ -134,7 +134,7 @@ class MatWriter final : public SnapshotWriter {
   }
 
   std::filesystem::path part_;
-  SnapshotColumns has_;
+  ForeignColumns has_;
   WriteOptions options_;
   std::size_t n_beads_ = 0, n_frames_ = 0;
   std::map<std::string, std::vector<double>> of_frame_, of_bead_;
@@ -150,7 +150,7 @@ const ForeignFormat mat_format = {
     .help = "MAT-file, a matrix of beads and frames per quantity: MATLAB, Octave, SciPy",
     .open = nullptr,
     .create = [](const std::filesystem::path& part, const WriteOptions& options)
-        -> std::unique_ptr<SnapshotWriter> { return std::make_unique<MatWriter>(part, options); },
+        -> std::unique_ptr<ForeignWriter> { return std::make_unique<MatWriter>(part, options); },
     .numbers = true,
     .mark = kHeader};
 

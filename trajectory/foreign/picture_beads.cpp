@@ -4,9 +4,9 @@
 
 namespace twincell {
 
-bool PictureBeadsReader::next(Snapshot& s) {
+bool PictureBeadsReader::next(ForeignFrame& s) {
   if (next_ == beads_.size()) return false;
-  s = Snapshot{};
+  s = ForeignFrame{};
   s.step = beads_[next_].frame;
   s.line = beads_[next_].bead.line;
   s.time = beads_[next_].time;

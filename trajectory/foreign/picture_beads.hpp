@@ -11,10 +11,10 @@ namespace twincell {
 
 /// A reader that has all beads of a file in memory and hands them out frame by frame. The constructor of a
 /// format fills `beads_` and `has_`, then calls sort_by_frame().
-class PictureBeadsReader : public SnapshotReader {
+class PictureBeadsReader : public ForeignReader {
  public:
-  bool next(Snapshot& s) final;
-  [[nodiscard]] const SnapshotColumns& columns() const final { return has_; }
+  bool next(ForeignFrame& s) final;
+  [[nodiscard]] const ForeignColumns& columns() const final { return has_; }
   [[nodiscard]] Vec3 upright(const Vec3& v) const final {
     return from_picture(v, options_.dimension, options_.y_up);
   }
@@ -25,16 +25,16 @@ class PictureBeadsReader : public SnapshotReader {
   struct BeadOfFrame {
     std::int64_t frame = 0;
     std::optional<double> time;
-    SnapshotBead bead;
+    ForeignBead bead;
   };
 
   PictureBeadsReader(const std::filesystem::path& file, const ReadOptions& options)
-      : SnapshotReader(file), options_(options) {}
+      : ForeignReader(file), options_(options) {}
   /// Sorts by frame; the order within a frame remains.
   void sort_by_frame();
 
   ReadOptions options_;
-  SnapshotColumns has_;
+  ForeignColumns has_;
   std::vector<BeadOfFrame> beads_;
 
  private:

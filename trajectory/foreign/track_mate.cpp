@@ -171,7 +171,7 @@ class TrackMateReader final : public PictureBeadsReader {
 
 constexpr const char* kTrackMateMark = "<!-- written by twincell -->";
 
-class TrackMateWriter final : public SnapshotWriter {
+class TrackMateWriter final : public ForeignWriter {
  public:
   TrackMateWriter(const std::filesystem::path& part, const WriteOptions& options)
       : out_(part), options_(options) {
@@ -191,10 +191,10 @@ class TrackMateWriter final : public SnapshotWriter {
     out_.text() += "</SpotFeatures>\n<EdgeFeatures/>\n<TrackFeatures/>\n</FeatureDeclarations>\n<AllSpots>\n";
   }
 
-  void append(const Snapshot& s) override {
+  void append(const ForeignFrame& s) override {
     auto text = std::back_inserter(out_.text());
     fmt::format_to(text, "<SpotsInFrame frame=\"{}\">\n", n_frames_);
-    for (const SnapshotBead& bead : s.beads) {
+    for (const ForeignBead& bead : s.beads) {
       const Vec3 r = to_picture(bead.position, options_.dimension);
       fmt::format_to(text,
                      "<Spot ID=\"{}\" name=\"{}\" QUALITY=\"1\" POSITION_X=\"{}\" POSITION_Y=\"{}\" "
@@ -255,9 +255,9 @@ const ForeignFormat track_mate_format = {
     .extensions = ".xml",
     .help = "TrackMate's file (y downwards): Fiji",
     .open = [](const std::filesystem::path& file, const ReadOptions& options)
-        -> std::unique_ptr<SnapshotReader> { return std::make_unique<TrackMateReader>(file, options); },
+        -> std::unique_ptr<ForeignReader> { return std::make_unique<TrackMateReader>(file, options); },
     .create = [](const std::filesystem::path& part, const WriteOptions& options)
-        -> std::unique_ptr<SnapshotWriter> { return std::make_unique<TrackMateWriter>(part, options); },
+        -> std::unique_ptr<ForeignWriter> { return std::make_unique<TrackMateWriter>(part, options); },
     .mark = kTrackMateMark,
     .source = "experiment"};
 

@@ -44,12 +44,12 @@ class Appended {
   std::string bytes_;
 };
 
-class VtkWriter final : public SnapshotWriter {
+class VtkWriter final : public ForeignWriter {
  public:
   VtkWriter(std::filesystem::path part, const WriteOptions& options)
       : part_(std::move(part)), has_(options.columns), options_(options) {}
 
-  void append(const Snapshot& s) override {
+  void append(const ForeignFrame& s) override {
     beads_ += write(s, fmt::format("frame_{:06}.vtp", n_frames_), beads_of(s));
     if (has_.contacts) contacts_ += write(s, fmt::format("contacts_{:06}.vtp", n_frames_), contacts_of(s));
     ++n_frames_;
@@ -62,7 +62,8 @@ class VtkWriter final : public SnapshotWriter {
 
  private:
   /// Writes a file of one frame and returns its entry in the list.
-  [[nodiscard]] std::string write(const Snapshot& s, const std::string& name, const std::string& text) const {
+  [[nodiscard]] std::string write(const ForeignFrame& s, const std::string& name,
+                                  const std::string& text) const {
     TextOutput out(part_ / name);
     out.text() = text;
     out.close();
@@ -79,7 +80,7 @@ class VtkWriter final : public SnapshotWriter {
   }
 
   /// The beginning of a file: the numbers of the frame.
-  static std::string head(const Snapshot& s, Appended& data) {
+  static std::string head(const ForeignFrame& s, Appended& data) {
     std::string x =
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
         "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n";
@@ -96,11 +97,11 @@ class VtkWriter final : public SnapshotWriter {
   }
 
   /// Contacts as lines: force chains.
-  [[nodiscard]] static std::string contacts_of(const Snapshot& s) {
+  [[nodiscard]] static std::string contacts_of(const ForeignFrame& s) {
     Appended data;
     std::vector<double> points, overlaps, normal, tangential;
     std::vector<std::int64_t> i, j, indices, ends;
-    for (const SnapshotContact& c : s.contacts) {
+    for (const ForeignContact& c : s.contacts) {
       for (const Vec3& end : {c.from, c.to}) {
         indices.push_back(static_cast<std::int64_t>(indices.size()));
         points.insert(points.end(), end.data(), end.data() + 3);
@@ -128,22 +129,22 @@ class VtkWriter final : public SnapshotWriter {
     return x + "</Lines>\n" + tail(data);
   }
 
-  [[nodiscard]] std::string beads_of(const Snapshot& s) const {
+  [[nodiscard]] std::string beads_of(const ForeignFrame& s) const {
     Appended data;
-    const auto vectors = [&](const char* name, Vec3 SnapshotBead::*member) {
+    const auto vectors = [&](const char* name, Vec3 ForeignBead::*member) {
       std::vector<double> values;
-      for (const SnapshotBead& bead : s.beads)
+      for (const ForeignBead& bead : s.beads)
         for (int k = 0; k < 3; ++k) values.push_back((bead.*member)[k]);
       return data.add("Float64", name, 3, values);
     };
-    const auto numbers = [&](const char* name, double SnapshotBead::*member) {
+    const auto numbers = [&](const char* name, double ForeignBead::*member) {
       std::vector<double> values;
-      for (const SnapshotBead& bead : s.beads) values.push_back(bead.*member);
+      for (const ForeignBead& bead : s.beads) values.push_back(bead.*member);
       return data.add("Float64", name, 1, values);
     };
     std::vector<std::int64_t> ids, ends;
     std::vector<std::uint8_t> tracers;
-    for (const SnapshotBead& bead : s.beads) {
+    for (const ForeignBead& bead : s.beads) {
       ids.push_back(bead.id);
       ends.push_back(static_cast<std::int64_t>(ends.size()) + 1);
       tracers.push_back(bead.type == 2 ? 1 : 0);
@@ -156,15 +157,15 @@ class VtkWriter final : public SnapshotWriter {
         "<Piece NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" NumberOfLines=\"0\" "
         "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<Points>\n",
         s.beads.size());
-    x += vectors("position", &SnapshotBead::position);
+    x += vectors("position", &ForeignBead::position);
     x += "</Points>\n<PointData>\n";
     x += data.add("Int64", "id", 1, ids);
-    if (has_.radius) x += numbers("radius", &SnapshotBead::radius);
-    if (has_.mass) x += numbers("mass", &SnapshotBead::mass);
+    if (has_.radius) x += numbers("radius", &ForeignBead::radius);
+    if (has_.mass) x += numbers("mass", &ForeignBead::mass);
     if (has_.type) x += data.add("UInt8", "tracer", 1, tracers);
-    if (has_.velocity[0]) x += vectors("velocity", &SnapshotBead::velocity);
-    if (has_.spin[2]) x += vectors("spin", &SnapshotBead::spin);
-    if (has_.uncertainty) x += vectors("position_sigma", &SnapshotBead::uncertainty);
+    if (has_.velocity[0]) x += vectors("velocity", &ForeignBead::velocity);
+    if (has_.spin[2]) x += vectors("spin", &ForeignBead::spin);
+    if (has_.uncertainty) x += vectors("position_sigma", &ForeignBead::uncertainty);
     for (std::size_t k = 0; k < has_.numbers.size(); ++k)
       x += data.add("Float64", has_.numbers[k].c_str(), 1, s.numbers[k]);
     x += "</PointData>\n<Verts>\n";  // ParaView draws points only where there are cells
@@ -174,7 +175,7 @@ class VtkWriter final : public SnapshotWriter {
   }
 
   std::filesystem::path part_;
-  SnapshotColumns has_;
+  ForeignColumns has_;
   WriteOptions options_;
   std::string beads_, contacts_;  ///< entries of the lists
   std::size_t n_frames_ = 0;
@@ -189,7 +190,7 @@ const ForeignFormat vtk_format = {
     .help = "folder of VTK PolyData with a .pvd: ParaView, PyVista",
     .open = nullptr,
     .create = [](const std::filesystem::path& part, const WriteOptions& options)
-        -> std::unique_ptr<SnapshotWriter> { return std::make_unique<VtkWriter>(part, options); },
+        -> std::unique_ptr<ForeignWriter> { return std::make_unique<VtkWriter>(part, options); },
     .folder = true,
     .numbers = true};
 

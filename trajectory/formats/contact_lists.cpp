@@ -66,10 +66,10 @@ void ContactListReader::read(std::size_t frame, std::vector<std::int32_t>& pairs
   if (n == 0) return;
   pairs_.read(begin, h5::native<std::int32_t>(), pairs.data(), n);
   if (each_ > 0) values_.read(begin, h5::native<double>(), values.data(), n);
-  constexpr std::int32_t kMostWalls = 100;
+  constexpr std::int32_t kMaxWalls = 100;
   for (std::size_t k = 0; k < n; ++k) {
     const std::int32_t i = pairs[2 * k], j = pairs[2 * k + 1];
-    if (i < 0 || i >= beads_ || j >= beads_ || j < -kMostWalls || (j >= 0 && j <= i))
+    if (i < 0 || i >= beads_ || j >= beads_ || j < -kMaxWalls || (j >= 0 && j <= i))
       refuse("/pairs", fmt::format("({}, {}) is not a contact of {} beads.", i, j, beads_));
     for (std::size_t m = 0; m < each_; ++m)
       if (!std::isfinite(values[k * each_ + m]))

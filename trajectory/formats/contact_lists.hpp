@@ -41,8 +41,8 @@ class ContactListReader {
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(pairs_); }
   /// K; 0 if no frame has a contact.
   [[nodiscard]] std::size_t values_each() const { return each_; }
-  /// Reads one frame. \throws InputError for a pair that is no contact of the beads, and for a value that is
-  /// not finite
+  /// Reads one frame. \throws InputError for a pair that is not a contact of the beads, and for a value that
+  /// is not finite
   void read(std::size_t frame, std::vector<std::int32_t>& pairs, std::vector<double>& values) const;
 
  private:

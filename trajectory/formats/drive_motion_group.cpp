@@ -11,7 +11,7 @@ namespace twincell {
 
 namespace {
 
-constexpr double kMostCycles = 1e9;
+constexpr double kMaxCycles = 1e9;
 
 /// The numbers of a group, each with its bounds.
 class Numbers {
@@ -55,25 +55,25 @@ void write_drive_motion(hid_t drive, const Drive& motion) {
 }
 
 void read_drive_motion(hid_t drive, Drive& motion, const Where& where) {
-  constexpr double kFarthest = 1e6, kFastest = 1e9, kSlowest = 1e-9;
+  constexpr double kMaxAmplitude_sigma = 1e6, kMaxOmega = 1e9, kMinOmega = 1e-9;  // omega: 1/t0
   if (h5::exists(drive, "ramp")) {
     const Numbers group(drive, "ramp", where);
     // The ramp divides by the frequency before it.
-    if (!(motion.omega >= kSlowest))
+    if (!(motion.omega >= kMinOmega))
       throw InputError(where, fmt::format("has a ramp, but its omega is {:g}.", motion.omega));
     DriveRamp ramp{.from = {motion.amplitude, motion.omega}, .to = {}};
-    ramp.to.amplitude = group.in("amplitude", 0, kFarthest);
-    ramp.to.omega = group.in("omega", kSlowest, kFastest);
+    ramp.to.amplitude = group.in("amplitude", 0, kMaxAmplitude_sigma);
+    ramp.to.omega = group.in("omega", kMinOmega, kMaxOmega);
     ramp.power = static_cast<int>(group.in("power", 0, 2, true));
-    ramp.first = group.in("first", 0, kMostCycles, true);
-    ramp.cycles = group.in("cycles", 1, kMostCycles, true);
+    ramp.first = group.in("first", 0, kMaxCycles, true);
+    ramp.cycles = group.in("cycles", 1, kMaxCycles, true);
     ramp.returns = group.in("returns", 0, 1, true) == 1;
     motion.ramp = ramp;
   }
   if (h5::exists(drive, "horizontal")) {
     const Numbers group(drive, "horizontal", where);
     HorizontalMotion horizontal;
-    horizontal.amplitude = group.in("amplitude", 0, kFarthest);
+    horizontal.amplitude = group.in("amplitude", 0, kMaxAmplitude_sigma);
     horizontal.ratio = static_cast<int>(group.in("ratio", 1, kLargestRatio, true));
     horizontal.phase = group.in("phase", 0, 1);
     motion.horizontal = horizontal;

@@ -30,16 +30,16 @@ std::shared_ptr<const RecordedMotion> read_recorded(hid_t drive, const Where& wh
   if (!h5::read_scalar(group.get(), "interval", info.interval) ||
       !h5::read_scalar(group.get(), "start", info.start) || !h5::read_scalar(group.get(), "cycles", cycles))
     throw InputError(where, "needs interval, start and cycles.");
-  constexpr double kLongest = 1e9, kMostCycles = kMostSamples;
-  if (!(info.interval > 0 && info.interval <= kLongest))
+  constexpr double kMaxTime = 1e9, kMaxCycles = kMaxSamples;  // t0; cycles
+  if (!(info.interval > 0 && info.interval <= kMaxTime))
     throw InputError(where, fmt::format("its interval is {:g}; it must be above 0 and at most {:g}.",
-                                        info.interval, kLongest));
-  if (!(std::abs(info.start) <= kLongest))
+                                        info.interval, kMaxTime));
+  if (!(std::abs(info.start) <= kMaxTime))
     throw InputError(where,
-                     fmt::format("its start is {:g}; it must be within {:g} of 0.", info.start, kLongest));
-  if (!(cycles >= 0 && cycles <= kMostCycles && cycles == std::floor(cycles)))
+                     fmt::format("its start is {:g}; it must be within {:g} of 0.", info.start, kMaxTime));
+  if (!(cycles >= 0 && cycles <= kMaxCycles && cycles == std::floor(cycles)))
     throw InputError(
-        where, fmt::format("its cycles are {:g}; a whole number up to {:g} is needed.", cycles, kMostCycles));
+        where, fmt::format("its cycles are {:g}; a whole number up to {:g} is needed.", cycles, kMaxCycles));
   info.cycles = static_cast<int>(cycles);
   const auto text = [&](const char* name) {
     const auto found = h5::read_text_attribute(group.get(), name);
@@ -48,10 +48,10 @@ std::shared_ptr<const RecordedMotion> read_recorded(hid_t drive, const Where& wh
   info.file = text("file");
   info.sha256 = text("sha256");
   const auto values = h5::read_dataset<double>(group.get(), "samples");
-  if (values.size() < 6 || values.size() % 3 != 0 || values.size() / 3 > kMostSamples)
+  if (values.size() < 6 || values.size() % 3 != 0 || values.size() / 3 > kMaxSamples)
     throw InputError(
         where, fmt::format("its samples must be 2 to {} rows of displacement, velocity and acceleration.",
-                           kMostSamples));
+                           kMaxSamples));
   std::vector<MotionSample> samples;
   for (std::size_t k = 0; k < values.size(); k += 3) {
     samples.push_back({values[k], values[k + 1], values[k + 2]});

@@ -20,7 +20,7 @@ namespace twincell {
 ///     @file, @sha256        of the record
 void write_recorded(hid_t drive, const RecordedMotion& motion);
 
-/// Reads it. \throws InputError at `where` for missing or more than kMostSamples samples, and for numbers
+/// Reads it. \throws InputError at `where` for missing or more than kMaxSamples samples, and for numbers
 /// that no record has
 std::shared_ptr<const RecordedMotion> read_recorded(hid_t drive, const Where& where);
 

@@ -79,7 +79,7 @@ class Folder final : public FrameSource {
 
 /// "; its folder frames does", for a folder above that of the pictures.
 std::string folders_with_pictures(const fs::path& folder) {
-  constexpr std::size_t kNamed = 3;
+  constexpr std::size_t kMaxNamed = 3;
   std::vector<std::string> names;
   std::error_code error;
   for (fs::directory_iterator below(folder, error), end; !error && below != end; below.increment(error)) {
@@ -93,8 +93,8 @@ std::string folders_with_pictures(const fs::path& folder) {
   }
   if (names.empty()) return {};
   std::sort(names.begin(), names.end(), natural_less);
-  const std::string more = names.size() > kNamed ? ", …" : "";
-  names.resize(std::min(names.size(), kNamed));
+  const std::string more = names.size() > kMaxNamed ? ", …" : "";
+  names.resize(std::min(names.size(), kMaxNamed));
   return names.size() == 1 ? fmt::format("; its folder {} does", names.front())
                            : fmt::format("; its folders {}{} do", fmt::join(names, ", "), more);
 }

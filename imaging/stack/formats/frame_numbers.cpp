@@ -10,8 +10,8 @@
 #include <optional>
 #include <set>
 
-#include "core/counted.hpp"
 #include "core/median.hpp"
+#include "core/plural.hpp"
 #include "imaging/stack/frame_source.hpp"
 
 namespace twincell::imaging::frames {
@@ -19,7 +19,7 @@ namespace {
 
 using Number = std::int64_t;
 
-constexpr std::size_t kFewest = 2;  // pictures of a series
+constexpr std::size_t kMinPictures = 2;  // of a series
 
 struct Numbered {
   Number number;
@@ -36,13 +36,13 @@ struct Parts {
 /// Nothing for a name without a number, or with one of more than 18 digits.
 std::optional<Parts> parts_of(const std::string& name) {
   constexpr const char* kDigits = "0123456789";
-  constexpr std::size_t kMostDigits = 18;
+  constexpr std::size_t kMaxDigits = 18;
   const std::string stem = std::filesystem::path(name).stem().string();
   const std::size_t last = stem.find_last_of(kDigits);
   if (last == std::string::npos) return std::nullopt;
   const std::size_t before = stem.find_last_not_of(kDigits, last);
   const std::size_t first = before == std::string::npos ? 0 : before + 1;
-  if (last + 1 - first > kMostDigits) return std::nullopt;
+  if (last + 1 - first > kMaxDigits) return std::nullopt;
   Parts parts;
   std::from_chars(stem.data() + first, stem.data() + last + 1, parts.number);
   const bool has_sign = first > 0 && (stem[first - 1] == '+' || stem[first - 1] == '-');
@@ -81,13 +81,13 @@ std::map<std::string, std::vector<Numbered>> series_of(const std::vector<std::st
 
 /// "7 and 30 to 39": the numbers that are skipped, the first few ranges.
 std::string skipped_numbers(const std::vector<Numbered>& pictures, Number step) {
-  constexpr std::size_t kMost = 4;
+  constexpr std::size_t kMaxRanges = 4;
   std::vector<std::string> ranges;
   std::size_t more = 0;
   for (std::size_t i = 1; i < pictures.size(); ++i) {
     const Number first = pictures[i - 1].number + step, last = pictures[i].number - step;
     if (first > last) continue;
-    if (ranges.size() == kMost)
+    if (ranges.size() == kMaxRanges)
       ++more;
     else
       ranges.push_back(first == last ? fmt::format("{}", first) : fmt::format("{} to {}", first, last));
@@ -127,18 +127,18 @@ void sort_as_frames(std::vector<std::string>& names) {
 }
 
 std::vector<std::string> notes_on_names(const std::vector<std::string>& names) {
-  constexpr std::size_t kNamed = 3;
-  constexpr double kEven = 0.75;
+  constexpr std::size_t kMaxNamed = 3;
+  constexpr double kMinEvenShare = 0.75;  // of the steps between numbers
   auto series = series_of(names);
-  std::erase_if(series, [](const auto& s) { return s.second.size() < kFewest; });
+  std::erase_if(series, [](const auto& s) { return s.second.size() < kMinPictures; });
   if (series.size() > 1) {
     std::vector<std::string> each;
     for (const auto& [name, pictures] : series)
-      if (each.size() < kNamed) each.push_back(fmt::format("'{}' ({} frames)", name, pictures.size()));
+      if (each.size() < kMaxNamed) each.push_back(fmt::format("'{}' ({} frames)", name, pictures.size()));
     return {
         fmt::format("the names belong to {} series, {}{}; they are read as one stack, so put each camera or "
                     "recording into its own folder.",
-                    series.size(), fmt::join(each, ", "), series.size() > kNamed ? ", …" : "")};
+                    series.size(), fmt::join(each, ", "), series.size() > kMaxNamed ? ", …" : "")};
   }
   if (series.empty()) return {};
   const std::vector<Numbered>& pictures = series.begin()->second;
@@ -154,11 +154,12 @@ std::vector<std::string> notes_on_names(const std::vector<std::string>& names) {
     missing += s / step - 1;
   }
   const auto even = std::count(steps.begin(), steps.end(), step);
-  if (missing == 0 || static_cast<double>(even) < kEven * static_cast<double>(steps.size())) return {};
+  if (missing == 0 || static_cast<double>(even) < kMinEvenShare * static_cast<double>(steps.size()))
+    return {};
   return {
       fmt::format("the numbers in the names skip {}: {}; the phases of the frames after a gap need "
                   "--phase-lock found, or a stack without the gap.",
-                  counted(missing, "frame"), skipped_numbers(pictures, step))};
+                  plural(missing, "frame"), skipped_numbers(pictures, step))};
 }
 
 }  // namespace twincell::imaging::frames

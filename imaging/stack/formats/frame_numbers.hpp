@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What the numbers in the names of a folder's pictures tell: frames that are missing or doubled, and
+/// Conclusions from the numbers in the names of a folder's pictures: frames that are missing or doubled, and
 /// pictures of several series.
 
 #include <string>

@@ -24,7 +24,7 @@ struct Head {
 };
 inline constexpr std::size_t kHeadBytes = 4096;
 
-/// \throws InputError if the file cannot be opened, is no regular file, or is empty
+/// \throws InputError if the file cannot be opened, is not a regular file, or is empty
 Head head_of(const std::filesystem::path& file);
 
 /// A file format.

@@ -57,96 +57,122 @@ class Walk {
   }
 
  private:
+  /// Size and storage of one page. A piece is a strip, as wide as the page, or a tile.
+  struct Page {
+    Walked properties;
+    std::vector<std::uint64_t> offsets, lengths;      // of the pieces, bytes
+    std::uint64_t piece_width = 0, piece_height = 0;  // px; 0: as the page
+  };
+
   // Checks the page at `at`; returns the position of the next one.
   std::uint64_t page(std::uint64_t at) {
-    // Entries: read the tags that determine size and storage of the page.
     const std::uint64_t count_bytes = wide_ ? 8 : 2, entry_bytes = wide_ ? 20 : 12, word = wide_ ? 8 : 4;
     const std::uint64_t n = number(at, count_bytes);
     if (n > in_.size() / entry_bytes) in_.require(in_.size(), entry_bytes, kPage);
     entries_ = in_.bytes(at + count_bytes, n * entry_bytes + word, kPage);
-    Walked page;
-    std::vector<std::uint64_t> offsets, lengths;
-    std::uint64_t piece_width = 0, piece_height = 0;  // of a strip (as wide as the page) or a tile
-    for (std::uint64_t i = 0; i < n; ++i) {
-      const std::uint8_t* entry = &entries_[i * entry_bytes];
-      switch (number_at(entry, 2, big_first_)) {
-        case 256:
-          page.width = first(entry);
-          break;
-        case 257:
-          page.height = first(entry);
-          break;
-        case 258:
-          page.bits = first(entry);
-          break;
-        case 259:
-          page.compression = first(entry);
-          break;
-        case 262:
-          page.photometric = first(entry);
-          break;
-        case 277:
-          page.samples = first(entry);
-          break;
-        case 270:
-          if (found_.pages == 0) found_.description = text(entry);
-          break;
-        case 278:
-        case 323:
-          piece_height = first(entry);
-          break;
-        case 322:
-          piece_width = first(entry);
-          break;
-        case 273:
-        case 324:
-          offsets = values(entry);
-          break;  // offsets of strips or tiles
-        case 279:
-        case 325:
-          lengths = values(entry);
-          break;
-        default:
-          break;
-      }
+    Page page;
+    for (std::uint64_t i = 0; i < n; ++i) read_entry(&entries_[i * entry_bytes], page);
+    require_size(page.properties);
+    require_pieces(page);
+    require_lengths(page);
+    if (found_.pages == 0) keep_as_first(page);
+    return number_at(&entries_[n * entry_bytes], word, big_first_);
+  }
+
+  // Reads one of the tags that determine size and storage of the page; ignores the others.
+  void read_entry(const std::uint8_t* entry, Page& page) {
+    Walked& properties = page.properties;
+    switch (number_at(entry, 2, big_first_)) {
+      case 256:
+        properties.width = first(entry);
+        break;
+      case 257:
+        properties.height = first(entry);
+        break;
+      case 258:
+        properties.bits = first(entry);
+        break;
+      case 259:
+        properties.compression = first(entry);
+        break;
+      case 262:
+        properties.photometric = first(entry);
+        break;
+      case 277:
+        properties.samples = first(entry);
+        break;
+      case 270:
+        if (found_.pages == 0) found_.description = text(entry);
+        break;
+      case 278:
+      case 323:
+        page.piece_height = first(entry);
+        break;
+      case 322:
+        page.piece_width = first(entry);
+        break;
+      case 273:
+      case 324:
+        page.offsets = values(entry);
+        break;  // offsets of strips or tiles
+      case 279:
+      case 325:
+        page.lengths = values(entry);
+        break;
+      default:
+        break;
     }
-    // Size: must be plausible before memory is allocated.
+  }
+
+  // The size must be plausible before memory is allocated.
+  void require_size(const Walked& page) const {
     if (page.samples == 0 || page.samples > 64 || page.bits == 0 || page.bits > 64)
       in_.refuse(fmt::format("states that page {} has {} samples of {} bits per pixel.", found_.pages + 1,
                              page.samples, page.bits));
     require_plausible_size(in_.path(), page.width, page.height,
                            std::max<std::uint64_t>(4, page.samples * ((page.bits + 7) / 8)), in_.size());
-    // Pieces: all strips or tiles must be present, since libtiff fills in missing ones without an error.
+  }
+
+  // All strips or tiles must be present, since libtiff fills in missing ones without an error.
+  void require_pieces(const Page& page) const {
     const auto pieces = [](std::uint64_t side, std::uint64_t piece) {
       return piece == 0 ? 1 : (side + piece - 1) / piece;
     };
-    const std::uint64_t wanted = pieces(page.width, piece_width) * pieces(page.height, piece_height);
-    if (offsets.size() < wanted)
+    const std::uint64_t wanted =
+        pieces(page.properties.width, page.piece_width) * pieces(page.properties.height, page.piece_height);
+    if (page.offsets.size() < wanted)
       in_.refuse(fmt::format(
           "is truncated or damaged: page {} consists of {} pieces, of which {} have a place in the file.",
-          found_.pages + 1, wanted, offsets.size()));
-    // Lengths: the pieces must be inside the file, and without compression they must contain all pixels.
-    const std::uint64_t needed = (page.width * page.samples * page.bits + 7) / 8 * page.height;
-    std::uint64_t sum = 0;
-    for (std::size_t i = 0; i < std::min(offsets.size(), lengths.size()); ++i) {
-      in_.require(offsets[i], lengths[i], fmt::format("page {}", found_.pages + 1));
-      sum += lengths[i];
-    }
-    constexpr std::uint64_t none = 1, subsampled_colour = 6;
-    if (page.compression == none && page.photometric != subsampled_colour && sum < needed) {
-      if (!lengths.empty())
-        in_.refuse(fmt::format("is truncated or damaged: page {} has {} bytes of pixels, of the {} it needs.",
-                               found_.pages + 1, sum, needed));
-      in_.require(offsets[0], needed, fmt::format("page {}", found_.pages + 1));
-    }
-    if (found_.pages == 0) {
-      page.big_first = big_first_;
-      page.description = found_.description;
-      page.first_strip = offsets.empty() ? 0 : offsets[0];
-      found_ = page;
-    }
-    return number_at(&entries_[n * entry_bytes], word, big_first_);
+          found_.pages + 1, wanted, page.offsets.size()));
   }
+
+  // The pieces must be inside the file, and without compression they must contain all pixels.
+  void require_lengths(const Page& page) const {
+    const Walked& properties = page.properties;
+    const std::uint64_t needed =
+        (properties.width * properties.samples * properties.bits + 7) / 8 * properties.height;
+    std::uint64_t sum = 0;
+    for (std::size_t i = 0; i < std::min(page.offsets.size(), page.lengths.size()); ++i) {
+      in_.require(page.offsets[i], page.lengths[i], fmt::format("page {}", found_.pages + 1));
+      sum += page.lengths[i];
+    }
+    constexpr std::uint64_t kNone = 1, kSubsampledColour = 6;
+    if (properties.compression != kNone || properties.photometric == kSubsampledColour || sum >= needed)
+      return;
+    if (!page.lengths.empty())
+      in_.refuse(fmt::format("is truncated or damaged: page {} has {} bytes of pixels, of the {} it needs.",
+                             found_.pages + 1, sum, needed));
+    in_.require(page.offsets[0], needed, fmt::format("page {}", found_.pages + 1));
+  }
+
+  void keep_as_first(const Page& page) {
+    Walked properties = page.properties;
+    properties.big_first = big_first_;
+    properties.description = found_.description;
+    properties.first_strip = page.offsets.empty() ? 0 : page.offsets[0];
+    found_ = properties;
+  }
+
   [[nodiscard]] std::uint64_t bytes_each(const std::uint8_t* entry) const {
     switch (number_at(entry + 2, 2, big_first_)) {
       case 1:

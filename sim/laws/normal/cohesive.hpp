@@ -15,7 +15,8 @@ struct CohesiveSpringDashpot : LinearSpringDashpot {
                                     kName = "linear spring-dashpot, constant pull-off force";
   static constexpr const char* kKeys[] = {"k_n", "gamma_n", "c_n", "restitution", "pull_off_force"};
   static constexpr int kConstants = 3;
-  static constexpr bool kAttracts = true;  ///< excludes separate integration of a contact (isolated.hpp)
+  static constexpr bool kAttracts =
+      true;  ///< excludes separate integration of a contact (separate_integration.hpp)
 
   double pull_off_force = 0;  ///< F_c, m g
 

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "sim/laws/parameters.hpp"
-#include "sim/laws/real.hpp"
+#include "sim/laws/scalar_arithmetic.hpp"
 
 namespace twincell::sim {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "sim/laws/linear_collision.hpp"
-#include "sim/laws/real.hpp"
+#include "sim/laws/scalar_arithmetic.hpp"
 
 namespace twincell::sim {
 

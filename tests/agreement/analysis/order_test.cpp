@@ -1,13 +1,13 @@
 // The planar q6 against a direct evaluation of Steinhardt's definition in three dimensions, over all pairs
 // and with a different polar axis.
-#include "analysis/order/order.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <complex>
 #include <numbers>
 #include <random>
+
+#include "analysis/order/bond_order.hpp"
 
 using namespace twincell;
 using namespace twincell::analysis;

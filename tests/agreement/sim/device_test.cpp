@@ -70,7 +70,7 @@ TEST_P(Device, HasTheBitsOfTheOracle) {
                });
 }
 
-TEST_P(Device, HabitsDoNotShow) {
+TEST_P(Device, RebuildIntervalDoesNotChangeBits) {
   constexpr std::int64_t kSteps = 300;
   for_each_law(
       kSteps, [&](const Plan& plan, const System& start, const Outcome& reference, const std::string& name) {

@@ -12,6 +12,7 @@
 #include "core/error.hpp"
 #include "sim/event_driven/binary_collision.hpp"
 #include "sim/event_driven/event_driven_solver.hpp"
+#include "sim/laws/contact_laws.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/run/simulation.hpp"
 #include "sim/scene/make_plan.hpp"
@@ -156,7 +157,7 @@ TEST(BinaryCollision, ObliqueIsTheLimitOfEverSmallerSteps) {
 
 // The orientation of two spheres in space does not change their collision from that in the plane of their
 // motion: relative speed, direction and spin are preserved.
-TEST(BinaryCollision, OfSmoothSpheresDoesNotDependOnHowTheyLie) {
+TEST(BinaryCollision, SmoothSpheresAreIndependentOfOrientation) {
   std::mt19937 random(8);
   std::normal_distribution<double> normal;
   const Impact impact{4, 3, 0, 0, 0.8, 3};
@@ -247,7 +248,7 @@ struct Gas {
   void periods(std::int64_t n) { kernel->advance(system, n * plan.steps_per_period); }
 };
 
-TEST(Flights, TheGasIsAsHotAsByStepsOfTime) {
+TEST(EventDriven, TemperatureAgreesWithTimeStepping) {
   for (const char* system : {"rough-2d", "smooth-3d"}) {
     std::array<double, 2> mean{}, error{};
     for (const bool flights : {false, true}) {
@@ -300,10 +301,10 @@ void expect_same_bits_however_cut(const std::string& text) {
   EXPECT_NE(whole.kernel->description().find("free flight"), std::string::npos);
   EXPECT_NE(whole.kernel->memory().front(), 0) << "beads fly";
 }
-TEST(Flights, TheBitsDoNotDependOnHowARunIsCutOrTakenUp) {
+TEST(EventDriven, BitwiseEqualForAnySplitOrResume) {
   expect_same_bits_however_cut(gas("rough-3d", 30));
 }
-TEST(Flights, WithSpringsTheBitsDoNotDependOnHowARunIsCutOrTakenUp) {
+TEST(EventDriven, WithSpringsBitwiseEqualForAnySplitOrResume) {
   expect_same_bits_however_cut(gas("rough-2d", 50, "[contact]\ntangential = \"spring\"\nk_t = 2e5\n"));
 }
 
@@ -356,7 +357,7 @@ double difference(const std::vector<Bead>& a, const std::vector<Bead>& b, std::s
 
 // A Hertz contact begins without a normal force, so the Coulomb limit begins at 0, and with it the sum of
 // spring and dashpot. Friction on a flat plate acts along -v_t, which never turns.
-TEST(Flights, AHertzContactBeginsToSlideAlongItsVelocity) {
+TEST(EventDriven, HertzContactStartsSlidingAlongItsVelocity) {
   const TemporaryFolder folder;
   put_file(
       folder / "one.csv",
@@ -391,7 +392,7 @@ TEST(Flights, AHertzContactBeginsToSlideAlongItsVelocity) {
 }
 
 // Three beads in contact move by time steps until they separate; the pair stays event-driven.
-TEST(Flights, ThreeThatMeetMoveAsByStepsAndTheOthersFlyOn) {
+TEST(EventDriven, ThreeBodyClusterAgreesWithTimeStepping) {
   for (const std::string& law : {kDashpot, kSpring, kSpringOnly, kForceClipped}) {
     const auto exact = pair_and_row("steps", 8000, 3, law), by_steps = pair_and_row("steps", 200, 3, law),
                flown = pair_and_row("event-driven", 200, 3, law);
@@ -405,7 +406,7 @@ TEST(Flights, ThreeThatMeetMoveAsByStepsAndTheOthersFlyOn) {
 // Ten beads in contact are too many to be stepped separately, so that the whole system changes to time steps
 // in the middle of the contact of the pair. The contact must end as if uninterrupted, which requires that its
 // tangential spring is passed on.
-TEST(Flights, AContactIsHandedOverAsItStands) {
+TEST(EventDriven, OpenContactIsPassedToTimeStepping) {
   for (const std::string& law : {kDashpot, kSpring, kSpringOnly, kForceClipped}) {
     const auto exact = pair_and_row("steps", 8000, 10, law),
                handed = pair_and_row("event-driven", 200, 10, law);
@@ -421,7 +422,7 @@ TEST(Flights, AContactIsHandedOverAsItStands) {
 // Two collisions that overlap make a cluster, whose steps are followed until its beads have parted. Half of
 // the impulse of the step in which they part belongs to the step after it: elastic gases were heated without
 // it.
-TEST(Flights, AClusterHasTheEnergyOfSteps) {
+TEST(EventDriven, ClusterEnergyAgreesWithTimeStepping) {
   for (const double n : {18.0, 20.0, 22.0, 25.0, 30.0, 40.0, 50.0}) {
     double energy[2];
     for (const bool flights : {false, true}) {
@@ -448,7 +449,7 @@ TEST(Flights, AClusterHasTheEnergyOfSteps) {
   }
 }
 
-TEST(Flights, ElasticBeadsKeepTheirEnergy) {
+TEST(EventDriven, ElasticBeadsConserveEnergy) {
   Gas g(
       "[cell]\ndimension = 3\nwidth = 8.0\ndepth = 8.0\nheight = 8.0\ngravity = 0.0\nsides = "
       "\"periodic\"\nplates = \"periodic\"\nbottom = \"periodic\"\n[beads]\ncount = 50\n[start]\nkind = "
@@ -472,7 +473,7 @@ TEST(Flights, ElasticBeadsKeepTheirEnergy) {
 }
 
 // A box at rest without gravity, defined by a scene file and run with `auto`.
-TEST(Flights, AreWhatAutoChoosesWithoutGravity) {
+TEST(EventDriven, IsTheAutomaticChoiceWithoutGravity) {
   const Scene scene = scene_of(
       "[cell]\nwidth = 8.0\nheight = 8.0\ngravity = 0.0\nsides = \"periodic\"\nbottom = \"periodic\"\n"
       "[beads]\ncount = 20\n[start]\nkind = \"random\"\n[contact]\nk_n = 1e5\nrestitution = 1.0\n"
@@ -501,7 +502,7 @@ TEST(Flights, AreWhatAutoChoosesWithoutGravity) {
   EXPECT_FALSE(make_plan(heavy).event_driven);
 }
 
-TEST(Flights, HardCases) {
+TEST(EventDriven, HardCases) {
   // Weak drive: the bed stays on the plate, and all motion is by time steps.
   {
     Gas g(gas("smooth-2d", 0.5, "stepping = \"event-driven\"\n"), true);
@@ -533,7 +534,7 @@ TEST(Flights, HardCases) {
   }
 }
 
-TEST(Flights, AreRefusedWhereTheyAreNotExact) {
+TEST(EventDriven, IsRefusedWhereNotExact) {
   const auto flights = [](const std::string& more) { return "[time]\nstepping = \"event-driven\"\n" + more; };
   const std::string paper = "preset = \"fortini-huang-2015\"\n[beads]\ncount = 40\n[drive]\ngamma = 7.0\n";
   EXPECT_TRUE(make_plan(scene_of(paper + flights(""))).event_driven);

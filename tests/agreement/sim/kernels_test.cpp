@@ -60,7 +60,7 @@ TEST_P(Kernels, GiveTheSameBits) {
     if (!available(kind)) std::printf("not compared: this processor has no %s\n", word);
 }
 
-TEST_P(Kernels, HabitsDoNotShow) {
+TEST_P(Kernels, RebuildIntervalDoesNotChangeBits) {
   constexpr std::int64_t kSteps = 300;
   for_each_law(
       kSteps, [&](const Plan& plan, const System& start, const Outcome& reference, const std::string& name) {
@@ -79,7 +79,7 @@ TEST_P(Kernels, HabitsDoNotShow) {
 }
 
 // H24, H25: a stored vector changes sign when i and j are exchanged
-TEST_P(Kernels, NumbersOfBeadsDoNotShow) {
+TEST_P(Kernels, BeadOrderDoesNotChangeBits) {
   constexpr std::int64_t kSteps = 300;
   for_each_law(kSteps,
                [&](const Plan& plan, const System& start, const Outcome& reference, const std::string& name) {
@@ -96,7 +96,7 @@ TEST_P(Kernels, NumbersOfBeadsDoNotShow) {
                });
 }
 
-TEST_P(Kernels, ThreadsDoNotShow) {  // H26
+TEST_P(Kernels, ThreadCountDoesNotChangeBits) {  // H26
   constexpr std::int64_t kSteps = 40;
   for_each_law(
       kSteps, [&](const Plan& plan, const System& start, const Outcome& reference, const std::string& name) {

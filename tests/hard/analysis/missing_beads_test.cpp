@@ -105,7 +105,7 @@ TEST(MissingBeads, ATracerLostNowAndThenDoesNotShiftTheVerdict) {
   EXPECT_NEAR(find_result(results, "s_c").value(), 0, 1e-12);
 }
 
-TEST(MissingBeads, FewerThanFourFifthsOfTheTracersAreNoMeasurement) {
+TEST(MissingBeads, NoResultBelow80PercentOfTracers) {
   const auto results =
       analyze(seen({.gamma = 1.5}, [](const Frame& f, std::size_t i) { return f.cycle >= 4 && i % 3 == 0; }));
   EXPECT_EQ(find_result(results, "s_k").n, 4U);

@@ -147,7 +147,7 @@ TEST(Tables, FieldsOfALine) {
 }
 
 // A decimal comma splits a number into two fields: the first of them is not a time.
-TEST(Tables, TriggersAreBelievedOnlyAsFarAsTheyAreOne) {
+TEST(Tables, MalformedTriggerListIsRefused) {
   const TemporaryFolder folder;
   struct Case {
     const char *text, *words;

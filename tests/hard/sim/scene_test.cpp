@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core/error.hpp"
+#include "sim/laws/law_words.hpp"
 #include "sim/scene/make_plan.hpp"
 #include "sim/scene/presets.hpp"
 #include "sim/scene/read_scene.hpp"

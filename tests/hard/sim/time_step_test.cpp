@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/error.hpp"
+#include "sim/laws/cell_laws.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/run/simulation.hpp"
 #include "sim/scene/make_plan.hpp"
@@ -155,7 +156,7 @@ TEST(TimeStep, H7_TheFastestRateSetsTheStep) {
 TEST(TimeStep, H9_StiffSpringsKeepTheirRestitution) {
   const std::string stiff = "[contact]\nk_n = 1e9\n";
   const Bench bench(kNoGravity + stiff);
-  const double asked = std::get<LinearSpringDashpot>(bench.plan.bead.normal)
+  const double asked = std::get<LinearSpringDashpot>(bench.plan.laws->bead.normal)
                            .oscillator({.m_eff = 0.5, .r_eff = 0.25, .inv_m_t = 6})
                            .restitution();
   const PhaseErrors errors =
@@ -170,7 +171,7 @@ TEST(TimeStep, H10_OverdampedContactsHaveAFiniteStep) {
   for (const char* gamma : {"2828.0", "2830.0", "1e5"}) {
     const Plan plan = plan_of({std::string("contact.gamma_n=") + gamma});
     EXPECT_TRUE(std::isfinite(plan.dt) && plan.dt > 0) << gamma;
-    const auto collision = std::get<LinearSpringDashpot>(plan.bead.normal)
+    const auto collision = std::get<LinearSpringDashpot>(plan.laws->bead.normal)
                                .oscillator({.m_eff = 0.5, .r_eff = 0.25, .inv_m_t = 6});
     EXPECT_EQ(collision.restitution() == 0, collision.damping_ratio() >= 1) << gamma;
     const double e = pair_restitution(std::string("[contact]\ngamma_n = ") + gamma + "\n", 50.37, 1, 0.3);
@@ -184,8 +185,9 @@ TEST(TimeStep, H10_NoRestitutionIsRefusedAndCriticalDampingSuggested) {
 }
 
 TEST(TimeStep, H11_RestitutionOneAndBeyond) {
-  EXPECT_EQ(std::get<LinearSpringDashpot>(plan_of({"contact.restitution=1"}).bead.normal).damping.eta(0.5),
-            0);
+  EXPECT_EQ(
+      std::get<LinearSpringDashpot>(plan_of({"contact.restitution=1"}).laws->bead.normal).damping.eta(0.5),
+      0);
   for (const char* e : {"1.0000001", "-0.5", "nan", "inf"})
     expect_refusal<ConfigError>([&] { plan_of({std::string("contact.restitution=") + e}); },
                                 "contact.restitution: ");

@@ -163,7 +163,7 @@ TEST_F(ForeignFormats, LaboratoryUnits) {
   EXPECT_THROW((void)ExportUnits::laboratory(t.info(), "--units"), ConfigError);
   t.info().scale = {.sigma_m = 0.002, .gravity_m_s2 = 9.81};
   const ExportUnits units = ExportUnits::laboratory(t.info(), "--units");
-  const Snapshot s = snapshot_of(t.frames()[1], t.info(), units);
+  const ForeignFrame s = foreign_frame_of(t.frames()[1], t.info(), units);
   EXPECT_NEAR(s.beads[0].position.x(), 2.2, 1e-12);                                 // 1.1 sigma of 2 mm
   EXPECT_NEAR(s.beads[0].velocity.x(), 0.1 * std::sqrt(9.81 * 0.002) * 1e3, 1e-9);  // v0 = sqrt(g sigma)
   EXPECT_NEAR(*s.time, t.frames()[1].time * std::sqrt(0.002 / 9.81), 1e-15);

@@ -170,7 +170,7 @@ TEST(BedDrive, UpsideDownPicturesAndBedsAtRestContradictTheDrive) {
             std::string::npos);
 }
 
-TEST(BedDrive, OfARigidBedIsExactAndItsErrorHonest) {
+TEST(BedDrive, RigidBedIsExactWithinItsStatedError) {
   // The bed has a closed form and noise of 0.02 sigma. The errors must be small, and the differences must
   // agree with them.
   double squares = 0, n = 0;

@@ -149,7 +149,7 @@ TEST(Bounce, DragAndGravityAreNuisancesThatComeBack) {
 TEST(Bounce, VibratingPlate) {
   const Film film{.e = 0.8, .amplitude = 0.3, .omega = 2.5, .duration = 30};
   const BounceOptions options{.gravity = std::nullopt, .drag = false, .plate = [](double t) {
-                                return PlateAt{0.3 * std::sin(2.5 * t), 0.75 * std::cos(2.5 * t)};
+                                return PlateState{0.3 * std::sin(2.5 * t), 0.75 * std::cos(2.5 * t)};
                               }};
   const Recovered r = recover("vibrating plate", film, 200, options);
   EXPECT_GE(r.coverage, 0.93);
@@ -161,7 +161,7 @@ TEST(Bounce, NoNoiseAndAPlateThatOvertakesFlights) {
   // has minima that are not impacts.
   const Film film{.e = 0.85, .noise = 0, .amplitude = 4, .duration = 60};
   const BounceOptions options{.gravity = std::nullopt, .drag = false, .plate = [](double t) {
-                                return PlateAt{4 * std::sin(t), 4 * std::cos(t)};
+                                return PlateState{4 * std::sin(t), 4 * std::cos(t)};
                               }};
   std::mt19937_64 generator(1);
   const BounceFit fit = fit_bounces(bounce(film, generator), options);
@@ -289,7 +289,7 @@ MemoryTrajectory gas(int cycles, int phases) {
 
 }  // namespace
 
-TEST(Collisions, OfTheSimulatorGiveItsRestitutionAndFriction) {
+TEST(Collisions, SimulatedCollisionsGiveBackRestitutionAndFriction) {
   const MemoryTrajectory trajectory = gas(60, 20);
   const FoundCollisions found = find_collisions(trajectory, {.gravity = 0, .least_speed = 0.2});
   const WaltonFit f = fit_walton(found.impacts, 0.5);
@@ -328,7 +328,7 @@ TEST(Collisions, FallAtTheGravityOfTheTrajectory) {
   EXPECT_NEAR(found.impacts[0].restitution, kE, 1e-9);
 }
 
-TEST(Collisions, OfAGasWithoutGravityNeedNoOption) {
+TEST(Collisions, GasWithoutGravityNeedsNoOption) {
   const MemoryTrajectory trajectory = gas(20, 20);
   const FoundCollisions stated = find_collisions(trajectory, {.gravity = 0}),
                         found = find_collisions(trajectory);
@@ -462,7 +462,7 @@ TEST(Inference, AsFewRunsAsASurfaceNeedsAreEnough) {
   EXPECT_THROW(infer_parameters(sought, runs, {{"a", 1.2, 0}}), InputError);
 }
 
-TEST(CurveComponents, OfTwoFormsAreTwoNumbers) {
+TEST(CurveComponents, TwoFormsGiveTwoComponents) {
   std::mt19937_64 generator(54);
   std::normal_distribution<double> normal(0, 1);
   std::vector<std::vector<double>> curves;

@@ -53,7 +53,7 @@ MemoryTrajectory track(const std::filesystem::path& folder, int threads) {
   LocatorOptions locator;
   locator.diameter_px = cell.pixels_per_sigma.value();
   const auto frames = open_frames(folder);
-  const TrackedStack stack = track_stack(*frames, locator, {}, cell, threads);
+  const TrackedStack stack = track_stack(*frames, cell, {.locator = locator, .threads = threads});
   const TrackPlan plan = plan_trajectory(stack, cell, stack.locator.diameter_px, 1);
   MemoryTrajectory result(plan.info);
   write_trajectory(stack, plan, result);

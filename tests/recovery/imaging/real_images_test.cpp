@@ -25,7 +25,7 @@ TEST(RealImages, BedloadIsFoundLinkedAndRepeats) {
   LocatorOptions locator;
   locator.diameter_px = 14.1;
   const auto frames = open_frames(folder);
-  const TrackedStack stack = track_stack(*frames, locator, {}, {}, 1);
+  const TrackedStack stack = track_stack(*frames, {}, {.locator = locator});
   ASSERT_EQ(stack.frames.size(), truth.size());
   const ScoredRows rows{30, 147.5};  // between the water surface and the glued base
   Scorer scorer(rows);

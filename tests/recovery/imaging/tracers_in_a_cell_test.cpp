@@ -55,7 +55,7 @@ TEST(TracersInACell, OfSixLayersAreFoundWithPlainDiscs) {
 
 // Red beads, walls and plate before white light: grey levels of 0.3 of the light. The tracers have 0.42 of
 // its darkness, near the 0.4 below which discs usually do not count.
-TEST(TracersInACell, ThatIsRedAreFound) {
+TEST(TracersInACell, RedTracersAreFound) {
   for (const char* film : {"gamma-0.9", "gamma-1.6"}) {
     const cv::Mat black = first_frame(kDemo / film / "frame_00000.png");
     double light = 0;
@@ -78,7 +78,7 @@ TEST(TracersInACell, ThatAreLeftOutAreCounted) {
     LocatorOptions options;
     options.diameter_px = 12;
     if (!plain) options.refine.method = "profile";
-    const TrackedStack stack = track_stack(*frames, options, {}, {}, 1);
+    const TrackedStack stack = track_stack(*frames, {}, {.locator = options});
     const auto n = static_cast<double>(stack.frames.size());
     if (plain) {
       EXPECT_EQ(stack.n_tracks, 60);

@@ -11,8 +11,8 @@
 namespace twincell::analysis::figure_style {
 namespace {
 
-Axis axis(bool logarithmic, double low, double high) {
-  Axis a{.label = "x/σ", .logarithmic = logarithmic};
+PlotAxis axis(bool logarithmic, double low, double high) {
+  PlotAxis a{.label = "x/σ", .logarithmic = logarithmic};
   a.show(low);
   a.show(high);
   return a;
@@ -23,19 +23,19 @@ bool has(const std::string& text, const std::string& part) {
 }
 
 TEST(FigureStyle, RangesHoldTheDataWithAMargin) {
-  const Axis a = axis(false, 10, 40).with_margin();
+  const PlotAxis a = axis(false, 10, 40).with_margin();
   EXPECT_NEAR(a.low, 10 - 0.04 * 30, 1e-12);
   EXPECT_NEAR(a.high, 40 + 0.04 * 30, 1e-12);
-  const Axis b = axis(true, 1e-2, 1e3).with_margin();
+  const PlotAxis b = axis(true, 1e-2, 1e3).with_margin();
   EXPECT_NEAR(std::log10(b.low), -2.2, 1e-12);
   EXPECT_NEAR(std::log10(b.high), 3.2, 1e-12);
-  const Axis one = axis(false, 7, 7).with_margin();
+  const PlotAxis one = axis(false, 7, 7).with_margin();
   EXPECT_LT(one.low, 7);
   EXPECT_GT(one.high, 7);
 }
 
 TEST(FigureStyle, WhatCannotBeDrawnDoesNotChangeTheRange) {
-  Axis a{.label = "", .logarithmic = true};
+  PlotAxis a{.label = "", .logarithmic = true};
   for (const double v : {0.0, -1.0, std::nan(""), HUGE_VAL}) a.show(v);
   EXPECT_TRUE(a.empty());
   EXPECT_LT(a.with_margin().low, a.with_margin().high);
@@ -45,7 +45,7 @@ TEST(FigureStyle, WhatCannotBeDrawnDoesNotChangeTheRange) {
 }
 
 TEST(FigureStyle, ALogarithmicPairHasOneFormat) {
-  const Axis brief = axis(true, 0.5, 90), wide = axis(true, 1e-7, 1), linear = axis(false, 0, 1);
+  const PlotAxis brief = axis(true, 0.5, 90), wide = axis(true, 1e-7, 1), linear = axis(false, 0, 1);
   // Alone, a short axis has plain numbers at 1, 2, 5 times a power of ten, the rest without a number.
   const std::string alone = axes(brief, linear);
   EXPECT_TRUE(has(alone, "set xtics (0.5, '' 0.6 1, '' 0.7 1, '' 0.8 1, '' 0.9 1, 1, 2, '' 3 1, '' 4 1, 5,"))

@@ -28,14 +28,14 @@ nlohmann::json told(const Run& run) {
 TEST(ReportData, MomentsInThousandthsAndAbsentBeadsAsNull) {
   auto run = bare("</script><b>");
   run.phases_per_cycle = 20;
-  Snapshot moment;
-  moment.frame.cycle = 3;
-  moment.frame.phase = 5;
-  moment.frame.position = {Vec3(1.23456, 0, 2), Vec3(NAN, NAN, NAN)};
-  moment.frame.id = {0, -1};
-  moment.order = {.q6 = {0.7408, NAN}, .psi6 = {1, NAN}, .psi4 = {0, NAN}, .n_bonds = {6, 0}};
-  moment.plate = 0.5;
-  run.show.moments = {moment};
+  Snapshot snapshot;
+  snapshot.frame.cycle = 3;
+  snapshot.frame.phase = 5;
+  snapshot.frame.position = {Vec3(1.23456, 0, 2), Vec3(NAN, NAN, NAN)};
+  snapshot.frame.id = {0, -1};
+  snapshot.order = {.q6 = {0.7408, NAN}, .psi6 = {1, NAN}, .psi4 = {0, NAN}, .n_bonds = {6, 0}};
+  snapshot.plate = 0.5;
+  run.show.snapshots = {snapshot};
   run.show.pictures = {"Man"};
   run.show.camera =
       PictureFrame{.pixels_per_sigma = 12, .origin_x = 20, .origin_y = 230, .width = 160, .height = 300};
@@ -59,7 +59,7 @@ TEST(ReportData, Base64PadsAsRfc4648Says) {
                                     {"foo", "Zm9v"},
                                     {"foob", "Zm9vYg=="}}) {
     auto run = bare("a");
-    run.show.moments = {Snapshot{}};
+    run.show.snapshots = {Snapshot{}};
     run.show.pictures = {bytes};
     EXPECT_EQ(told(run)["moments"][0]["picture"], "data:image/png;base64," + text);
   }

@@ -11,7 +11,7 @@
 
 using namespace twincell;
 
-TEST(Median, OfFewIsThatOfTheSorted) {
+TEST(Median, FewValuesAgreeWithSorting) {
   std::mt19937 random(3);
   for (std::size_t n = 1; n <= 64; ++n)
     for (const int kinds : {1, 3, 1000}) {  // from few distinct values (many ties) to many

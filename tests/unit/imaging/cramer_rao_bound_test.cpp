@@ -63,7 +63,7 @@ TEST(CramerRaoBound, IsThatOfDifferencesOfWholePictures) {
 }
 
 // For a large disc the edge is straight, and (dI/dx)^2 averages to half of its square along the rim.
-TEST(CramerRaoBound, OfALargeDiscIsThatOfAStraightEdge) {
+TEST(CramerRaoBound, LargeDiscApproachesAStraightEdge) {
   Picture p;
   p.width = p.height = 140;
   p.discs = {{.x = 70.3, .y = 69.8, .radius = 50}};

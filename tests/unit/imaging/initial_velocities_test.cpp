@@ -62,12 +62,12 @@ TEST(InitialVelocities, AStackThatBeginsInABurstIsFollowedBackToIt) {
   EXPECT_EQ(wrong(frames, steps), 0U);
 }
 
-TEST(InitialVelocities, OfACalmBeginningNothingIsSaid) {
+TEST(InitialVelocities, CalmStartGivesNoNote) {
   EXPECT_TRUE(steps_of(burst(kFrames, 0)).empty());
   EXPECT_TRUE(steps_of(burst(kFrames, 0.02)).empty());
 }
 
-TEST(InitialVelocities, ABeadThatIsNotInTheSecondFrameHasNone) {
+TEST(InitialVelocities, BeadMissingInTheSecondFrameHasNone) {
   std::vector<FrameOfBeads> frames = burst();
   frames[1].places.erase(frames[1].places.begin());  // a corner bead
   const std::vector<PixelPoint> steps = steps_of(frames);

@@ -68,7 +68,7 @@ TEST(Judge, OnePopulationHasNoTracers) {
   }
 }
 
-TEST(Judge, TwoPopulationsAreTold) {
+TEST(Judge, TwoPopulationsAreSeparated) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
   for (const std::size_t few : {1U, 5U, 40U}) {
@@ -100,7 +100,7 @@ TEST(Judge, EachBeadHasOneVerdict) {
     EXPECT_EQ(judged(good(x, y)), Verdict::bead) << x << ' ' << y;
 }
 
-TEST(Judge, OfTwoThatOverlapTheBetterStays) {
+TEST(Judge, BetterOfTwoOverlappingDiscsStays) {
   Detection a = good(50, 50), b = good(63, 50), c = good(77.9, 50);  // b overlaps a by 2 px; c touches b
   b.score = 0.7;
   const Judged j = judge({a, b, c}, 7.5, 200, 100, {});
@@ -114,7 +114,7 @@ TEST(Judge, OfTwoThatOverlapTheBetterStays) {
 }
 
 // A dropped candidate does not cause others to be dropped: of three in a row only the middle one is dropped.
-TEST(Judge, ADroppedOneDropsNobody) {
+TEST(Judge, DroppedDiscDropsNoOther) {
   Detection a = good(50, 50), b = good(60, 50), c = good(70, 50);
   b.score = 0.8;
   c.score = 0.7;

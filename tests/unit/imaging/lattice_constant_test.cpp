@@ -40,7 +40,7 @@ cv::Mat1b crystal(double constant, double diameter, double turned) {
 
 }  // namespace
 
-TEST(LatticeConstant, OfCrystalsToAPixel) {
+TEST(LatticeConstant, CrystalsToOnePixel) {
   for (const double constant : {8.0, 10.0, 12.5, 15.0, 20.0, 25.0})
     for (const double turned : {0.0, 0.1, 0.3})
       EXPECT_NEAR(lattice_constant(crystal(constant, constant, turned)), constant, 0.75)

@@ -30,7 +30,7 @@ std::vector<PixelPoint> moved(std::vector<PixelPoint> beads, double dx, double d
   return beads;
 }
 
-std::vector<std::int64_t> counted(std::size_t n) {
+std::vector<std::int64_t> plural(std::size_t n) {
   std::vector<std::int64_t> ids(n);
   std::iota(ids.begin(), ids.end(), 0);
   return ids;
@@ -42,9 +42,9 @@ TEST(Linker, ACrystalMovedAsAWholeKeepsItsNames) {
   for (const double step : {0.0, 0.3, 0.5, 0.8, 1.0}) {
     Linker linker({.diameter_px = 15});
     const auto start = crystal(12);
-    EXPECT_EQ(linker.next(start), counted(start.size()));
+    EXPECT_EQ(linker.next(start), plural(start.size()));
     for (int f = 1; f <= 3; ++f) {
-      EXPECT_EQ(linker.next(moved(start, 15 * step * f, 0)), counted(start.size())) << step << " d per frame";
+      EXPECT_EQ(linker.next(moved(start, 15 * step * f, 0)), plural(start.size())) << step << " d per frame";
       EXPECT_NEAR(linker.common_step().x_px, 15 * step, 1e-9);
       EXPECT_NEAR(linker.common_step().y_px, 0, 1e-9);
     }
@@ -60,7 +60,7 @@ TEST(Linker, IndependentSteps) {
   linker.next(beads);
   for (int f = 0; f < 10; ++f) {
     for (PixelPoint& p : beads) p = {p.x_px + step(generator), p.y_px + step(generator)};
-    EXPECT_EQ(linker.next(beads), counted(beads.size()));
+    EXPECT_EQ(linker.next(beads), plural(beads.size()));
   }
 }
 
@@ -71,7 +71,7 @@ TEST(Linker, AMissingBeadComesBackWithinMemoryAndNotAfter) {
     linker.next(beads);
     const PixelPoint last = beads.back();
     beads.pop_back();
-    for (int f = 0; f < missing; ++f) EXPECT_EQ(linker.next(beads), counted(35));
+    for (int f = 0; f < missing; ++f) EXPECT_EQ(linker.next(beads), plural(35));
     beads.push_back(last);
     const auto ids = linker.next(beads);
     EXPECT_EQ(ids.back(), missing <= 3 ? 35 : 36) << missing << " frames";
@@ -110,7 +110,7 @@ TEST(Linker, ABallisticBedWithStepsBeyondItsSpacingKeepsItsNames) {
   Linker linker({.diameter_px = 15, .fall_px = 1.5});
   double y = 0, v = -18;
   for (int f = 0; f < 25; ++f) {
-    ASSERT_EQ(linker.next(moved(start, 0, y)), counted(start.size())) << "frame " << f;
+    ASSERT_EQ(linker.next(moved(start, 0, y)), plural(start.size())) << "frame " << f;
     y += v;
     v += 1.5;
   }
@@ -123,14 +123,14 @@ TEST(Linker, ABedThatLandsFromBelowIsFollowedLayerByLayer) {
   for (int row = 0; row < 30; ++row)
     for (int i = 0; i < 20; ++i) bed.push_back({15 * (i + 0.5 * (row % 2)), -15 * std::sqrt(0.75) * row});
   Linker linker({.diameter_px = 15});
-  for (int f = 0; f < 3; ++f) ASSERT_EQ(linker.next(moved(bed, 0, 12.0 * f)), counted(bed.size()));
+  for (int f = 0; f < 3; ++f) ASSERT_EQ(linker.next(moved(bed, 0, 12.0 * f)), plural(bed.size()));
   auto landed = moved(bed, 0, 24.0);
   for (int row = 0; row < 30; ++row)
     for (int i = 0; i < 20; ++i) landed[static_cast<std::size_t>(20 * row + i)].y_px += 12.0 * row / 29;
-  EXPECT_EQ(linker.next(landed), counted(bed.size()));
+  EXPECT_EQ(linker.next(landed), plural(bed.size()));
 }
 
-TEST(Linker, TheLastCycleForetellsWhatNothingElseCould) {
+TEST(Linker, LastCyclePredictsTheMotion) {
   // Beads too far apart to be neighbours. Each makes a random step of up to 0.8 of their spacing that repeats
   // in every cycle, plus a small drift.
   constexpr int kPhases = 8;
@@ -180,7 +180,7 @@ TEST(Linker, ACrystalThatTurnsAtOnceKeepsItsNames) {
     turned.push_back(
         {100 + x * std::cos(angle) - y * std::sin(angle), 85 + x * std::sin(angle) + y * std::cos(angle)});
   }
-  EXPECT_EQ(linker.next(turned), counted(start.size()));
+  EXPECT_EQ(linker.next(turned), plural(start.size()));
   EXPECT_EQ(linker.last().rematched, 1);
 }
 
@@ -221,7 +221,7 @@ TEST(Linker, TheFrameAheadTellsWhoIsWhoAfterACollision) {
   auto wrong = [&](bool looks_ahead) {
     Linker linker({.diameter_px = kD});
     std::size_t count = 0;
-    std::vector<std::int64_t> before = counted(kBeads);
+    std::vector<std::int64_t> before = plural(kBeads);
     for (std::size_t f = 0; f < frames.size(); ++f) {
       const FrameAhead ahead = f + 1 < frames.size() ? FrameAhead{frames[f + 1], {}, {}} : FrameAhead{};
       const auto ids =
@@ -267,7 +267,7 @@ TEST(Linker, SpecksOfDustTakeNoBeadsPlace) {
         if (f == 8) seen.push_back({next.x_px, next.y_px - 15 * off});
         auto ids = linker.next(seen);
         ids.resize(3);
-        EXPECT_EQ(ids, counted(3)) << "frame " << f << ", specks " << off << " d off, closed " << closed;
+        EXPECT_EQ(ids, plural(3)) << "frame " << f << ", specks " << off << " d off, closed " << closed;
       }
     }
 }
@@ -340,7 +340,7 @@ TEST(Linker, DroppedAndDoubledFramesScaleTheStep) {
   for (int f = 0; f < 3; ++f) linker.next(moved(start, 4.0 * f, 0));
   linker.next(moved(start, 8, 0), {.interval = 0, .phase = -1, .cycle = -1});
   EXPECT_EQ(linker.next(moved(start, 8 + 16, 0), {.interval = 4, .phase = -1, .cycle = -1}),
-            counted(start.size()));
+            plural(start.size()));
   EXPECT_EQ(linker.last().settled, 64);
 }
 
@@ -357,16 +357,16 @@ TEST(Linker, ATracerPrefersATracer) {
   Linker linker({.diameter_px = 15, .max_shift_diameters = 0});
   const std::vector<std::uint8_t> kinds = {1, 0};
   linker.next(std::vector<PixelPoint>{{0, 0}, {16, 0}}, {}, kinds);
-  EXPECT_EQ(linker.next(std::vector<PixelPoint>{{7.5, 7}, {8.5, -7}}, {}, kinds), counted(2));
+  EXPECT_EQ(linker.next(std::vector<PixelPoint>{{7.5, 7}, {8.5, -7}}, {}, kinds), plural(2));
   EXPECT_EQ(linker.next(std::vector<PixelPoint>{{8.5, -7}, {7.5, 7}}, {}, std::vector<std::uint8_t>{0, 1}),
             (std::vector<std::int64_t>{1, 0}));
 }
 
-TEST(Linker, FewBeadsNoBeadsAllLeave) {
+TEST(Linker, FewBeadsNoBeadsAndAllBeadsLeaving) {
   Linker linker({.diameter_px = 15, .memory = 2});
   EXPECT_TRUE(linker.next({}).empty());
-  EXPECT_EQ(linker.next(std::vector<PixelPoint>{{3, 4}}), counted(1));
-  EXPECT_EQ(linker.next(std::vector<PixelPoint>{{5, 4}}), counted(1));
+  EXPECT_EQ(linker.next(std::vector<PixelPoint>{{3, 4}}), plural(1));
+  EXPECT_EQ(linker.next(std::vector<PixelPoint>{{5, 4}}), plural(1));
   for (int f = 0; f < 3; ++f) EXPECT_TRUE(linker.next({}).empty());
   EXPECT_EQ(linker.total().losses, 1);
   EXPECT_EQ(linker.next(std::vector<PixelPoint>{{5, 4}}), (std::vector<std::int64_t>{1}));
@@ -383,7 +383,7 @@ TEST(Linker, PlacesThatCoincideOrAreNone) {
   linker.next(beads);
   auto ids = linker.next(beads);
   std::sort(ids.begin(), ids.end());
-  EXPECT_EQ(ids, counted(17)) << "each name once";
+  EXPECT_EQ(ids, plural(17)) << "each name once";
   for (const double bad : {std::nan(""), HUGE_VAL, 1e12})
     EXPECT_THROW(linker.next(std::vector<PixelPoint>{{bad, 0}}), RunError);
 }

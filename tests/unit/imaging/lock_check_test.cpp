@@ -165,7 +165,7 @@ TEST(LockCheck, AnotherFirstPhaseIsNamed) {
   }
 }
 
-TEST(LockCheck, FramesInWhichThePlateRestsAreLeftOutWithAWord) {
+TEST(LockCheck, FramesWithThePlateAtRestAreExcludedWithANote) {
   for (const std::size_t rest : {20U, 40U, 60U})
     for (const bool before : {true, false})
       for (unsigned seed = 0; seed < 5; ++seed) {
@@ -182,7 +182,7 @@ TEST(LockCheck, FramesInWhichThePlateRestsAreLeftOutWithAWord) {
       }
 }
 
-TEST(LockCheck, APlateThatIsOftenMisreadIsNamed) {
+TEST(LockCheck, UnreliablePlateIsReported) {
   std::vector<double> plate = plate_of({.frames = 200, .drop = {}}, 1);
   for (std::size_t f = 7; f < plate.size(); f += 20) plate[f] += 8;
   const PhaseTable table = check_lock({20, 0}, {.plate_px = plate, .times_s = {}});
@@ -207,7 +207,7 @@ PhaseTable listed(int frames, double per_frame, double from) {
   return table;
 }
 
-TEST(LockCheck, AListIsHeldAgainstThePlate) {
+TEST(LockCheck, ListIsCheckedAgainstThePlate) {
   const std::vector<double> plate = plate_of({.frames = 100, .drop = {}}, 1);
   PhaseTable right = listed(100, 0.05, 0);
   check_list_by_plate(right, plate, true);
@@ -252,7 +252,7 @@ TEST(LockCheck, AListIsHeldAgainstThePlate) {
   EXPECT_EQ(unseen.checked_by, "");
 }
 
-TEST(LockCheck, AFilmOfTwoStrengthsIsNoFilmWithLostFrames) {
+TEST(LockCheck, TwoDriveStrengthsAreNotLostFrames) {
   std::vector<double> plate = plate_of({.frames = 60, .drop = {}}, 1);
   const std::vector<double> weaker = plate_of({.frames = 60, .amplitude = 7, .drop = {}}, 2);
   plate.insert(plate.end(), weaker.begin(), weaker.end());
@@ -272,7 +272,7 @@ TEST(LockCheck, TimeStampsShowGapsWhereThereIsNoPlate) {
   EXPECT_EQ(table.dropped, 3);
   EXPECT_EQ(right(table, film), 97U);
   evidence.times_s[50] += 0.001;
-  EXPECT_EQ(check_lock({20, 0}, evidence).checked_by, "") << "half an interval is no whole number";
+  EXPECT_EQ(check_lock({20, 0}, evidence).checked_by, "") << "half an interval is not a whole number";
 }
 
 TEST(LockCheck, TheBedShowsWhereFramesAreMissing) {
@@ -299,7 +299,7 @@ TEST(LockCheck, TheBedRaisesNoFalseAlarm) {
   EXPECT_GE(told, 20) << "a bed that repeats itself exactly can always tell";
 }
 
-TEST(LockCheck, WhatCannotBeCheckedIsSaid) {
+TEST(LockCheck, UncheckableCasesAreReported) {
   PhaseTable table = check_lock({20, 0}, {});
   check_lock_by_bed(table, {.heights = std::vector<double>(100, 3.0), .repeats = {}});
   EXPECT_EQ(table.checked_by, "");

@@ -45,7 +45,7 @@ TEST(MinCut, IsTheCheapestOfAllChoices) {
   }
 }
 
-TEST(MinCut, OfEqualsTheMostMove) {
+TEST(MinCut, AmongEqualCutsTheLargestIsTaken) {
   EXPECT_TRUE(MinCut(0).solve().empty());
   MinCut cut(3);
   cut.move(1, 0);

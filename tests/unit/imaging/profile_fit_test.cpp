@@ -37,8 +37,8 @@ TEST(DiscProfile, ThePlainDiscsRimIsWhereItsEdgeIs) {
 TEST(DiscProfile, PlainDiscsOfAnyBlurArePlain) {
   for (const double radius : {5.0, 7.3, 16.0})
     for (const double blur : {0.5, 0.8, 1.5, 3.0}) {
-      EXPECT_LT(profile_of({{radius, 0.9}}, blur).unlike_plain(), 1e-3) << radius << ' ' << blur;
-      EXPECT_GE(profile_of({{radius, 0.9}}, blur).unlike_plain(), 0) << radius << ' ' << blur;
+      EXPECT_LT(profile_of({{radius, 0.9}}, blur).difference_from_plain(), 1e-3) << radius << ' ' << blur;
+      EXPECT_GE(profile_of({{radius, 0.9}}, blur).difference_from_plain(), 0) << radius << ' ' << blur;
     }
 }
 
@@ -46,7 +46,7 @@ TEST(DiscProfile, PlainDiscsOfAnyBlurArePlain) {
 // remains. The best constant level leaves the fraction q (1 - q) b^2/(1 - 2 q b + q b^2) of the squares, q =
 // 1/25, b = 1/2: 0.0099.
 TEST(DiscProfile, ASmallSpotOfLightMakesNoOtherDisc) {
-  const double unlike = profile_of({{16, 0.9}, {3.2, -0.45}}, 0.5).unlike_plain();
+  const double unlike = profile_of({{16, 0.9}, {3.2, -0.45}}, 0.5).difference_from_plain();
   EXPECT_LT(unlike, 0.012);
   EXPECT_GT(unlike, 0.006);
 }
@@ -55,7 +55,7 @@ TEST(DiscProfile, ASmallSpotOfLightMakesNoOtherDisc) {
 // edges give nearly the same value.
 TEST(DiscProfile, AHollowDiscIsUnlikeAPlainOneByItsArea) {
   const double q = 0.64, b = 0.8, sharp = q * (1 - q) * b * b / (1 - 2 * q * b + q * b * b);
-  EXPECT_NEAR(profile_of({{30, 0.9}, {24, -0.72}}, 0.5).unlike_plain(), sharp, 0.05 * sharp);
+  EXPECT_NEAR(profile_of({{30, 0.9}, {24, -0.72}}, 0.5).difference_from_plain(), sharp, 0.05 * sharp);
   EXPECT_NEAR(profile_of({{30, 0.9}, {24, -0.72}}, 0.5).rim(), 30, 0.1);
 }
 

@@ -43,15 +43,15 @@ TEST(RimShift, OfDiscsIsNoneWithAnyNoise) {
 
 TEST(RimShift, TellsPolygonsFromDiscs) {
   // The radius of the circle of the same area is 1.05 times the inner radius of a hexagon.
-  EXPECT_GT(shift(objects(polygon(6, 0.95 * kRadius), 2), discs(kRadius)), kMostRimShift);
-  EXPECT_GT(shift(objects(polygon(4, 0.88 * kRadius), 2), discs(kRadius)), 2 * kMostRimShift);
-  EXPECT_LT(shift(objects(polygon(8, 0.97 * kRadius), 2), discs(kRadius)), kMostRimShift);
+  EXPECT_GT(shift(objects(polygon(6, 0.95 * kRadius), 2), discs(kRadius)), kMaxRimShift);
+  EXPECT_GT(shift(objects(polygon(4, 0.88 * kRadius), 2), discs(kRadius)), 2 * kMaxRimShift);
+  EXPECT_LT(shift(objects(polygon(8, 0.97 * kRadius), 2), discs(kRadius)), kMaxRimShift);
 }
 
 // Ellipses in random directions are not discs; those in one direction are stretched or moved discs.
 TEST(RimShift, LeavesOutWhatAllDiscsHaveInCommon) {
-  EXPECT_GT(shift(objects(wavy(0.06, 2), 1), discs(kRadius)), kMostRimShift);
-  EXPECT_LT(shift(objects(wavy(0.06, 2), 1, false), discs(kRadius)), 0.3 * kMostRimShift);
+  EXPECT_GT(shift(objects(wavy(0.06, 2), 1), discs(kRadius)), kMaxRimShift);
+  EXPECT_LT(shift(objects(wavy(0.06, 2), 1, false), discs(kRadius)), 0.3 * kMaxRimShift);
 }
 
 // The residuals of neighbours in contact, whose rims blur into each other, are no deviation.
@@ -76,7 +76,7 @@ TEST(RimShift, OfDiscsInContactIsNone) {
         level -= 85 * std::erfc((std::hypot(x - d.x, y - d.y) - d.radius) / std::numbers::sqrt2);
       grey(y, x) = static_cast<float>(level + normal(random));
     }
-  EXPECT_LT(shift(grey, crystal), 0.25 * kMostRimShift);
+  EXPECT_LT(shift(grey, crystal), 0.25 * kMaxRimShift);
 }
 
 // A quarter of the discs suffices, however unlike discs the others are; less does not.
@@ -95,9 +95,9 @@ TEST(RimShift, AQuarterOfTheDiscsMustBeRound) {
   };
   add(grey, 12);
   add(round, 8);
-  EXPECT_LT(rim_shift(many, rims, {kRadius}), 0.25 * kMostRimShift);
+  EXPECT_LT(rim_shift(many, rims, {kRadius}), 0.25 * kMaxRimShift);
   add(grey, 60);
-  EXPECT_GT(rim_shift(many, rims, {kRadius}), 2 * kMostRimShift);
+  EXPECT_GT(rim_shift(many, rims, {kRadius}), 2 * kMaxRimShift);
   // For the size that is the least round.
   std::vector<Detection> two = discs(kRadius);
   std::vector<RimShift> of_two = picture_evidence(round, two, {kRadius}).rims;
@@ -107,14 +107,13 @@ TEST(RimShift, AQuarterOfTheDiscsMustBeRound) {
   }
   const std::vector<RimShift> squares = picture_evidence(grey, discs(kRadius), {kRadius}).rims;
   of_two.insert(of_two.end(), squares.begin(), squares.end());
-  EXPECT_GT(rim_shift(two, of_two, {kRadius, 0.5 * kRadius}), 2 * kMostRimShift);
+  EXPECT_GT(rim_shift(two, of_two, {kRadius, 0.5 * kRadius}), 2 * kMaxRimShift);
 }
 
 TEST(RimShift, OfRimsThatAreNotSeenIsNone) {
   EXPECT_EQ(rim_shift({}, {}, {kRadius}), 0);
   for (const double noise : {0.5, 5.0, 20.0})
-    EXPECT_LT(shift(objects([](double) { return 0.0; }, noise), discs(kRadius)), 0.2 * kMostRimShift)
-        << noise;
+    EXPECT_LT(shift(objects([](double) { return 0.0; }, noise), discs(kRadius)), 0.2 * kMaxRimShift) << noise;
 }
 
 }  // namespace

@@ -35,15 +35,15 @@ TEST(RimVariation, GrowsWithTheSquareOfTheHarmonic) {
     const double less = variation(objects(wavy(0.03, m), 0.5), discs(kRadius)),
                  more = variation(objects(wavy(0.06, m), 0.5), discs(kRadius));
     EXPECT_NEAR(more / less, 4, 0.8) << m;
-    EXPECT_LT(less, kMostRimVariation) << m;
-    EXPECT_GT(variation(objects(wavy(0.12, m), 0.5), discs(kRadius)), 1.5 * kMostRimVariation) << m;
+    EXPECT_LT(less, kMaxRimVariation) << m;
+    EXPECT_GT(variation(objects(wavy(0.12, m), 0.5), discs(kRadius)), 1.5 * kMaxRimVariation) << m;
   }
 }
 
 TEST(RimVariation, TellsPolygonsFromDiscs) {
-  EXPECT_GT(variation(objects(polygon(3, 0.9 * kRadius), 2), discs(kRadius)), 2 * kMostRimVariation);
-  EXPECT_GT(variation(objects(polygon(4, 0.9 * kRadius), 2), discs(kRadius)), kMostRimVariation);
-  EXPECT_LT(variation(objects(polygon(6, 0.9 * kRadius), 2), discs(kRadius)), kMostRimVariation);
+  EXPECT_GT(variation(objects(polygon(3, 0.9 * kRadius), 2), discs(kRadius)), 2 * kMaxRimVariation);
+  EXPECT_GT(variation(objects(polygon(4, 0.9 * kRadius), 2), discs(kRadius)), kMaxRimVariation);
+  EXPECT_LT(variation(objects(polygon(6, 0.9 * kRadius), 2), discs(kRadius)), kMaxRimVariation);
 }
 
 // Ellipses in random directions are not discs; those in one direction are stretched or moved discs.
@@ -53,7 +53,7 @@ TEST(RimVariation, LeavesOutWhatAllDiscsHaveInCommon) {
   };
   const double apart = variation(objects(ellipse, 1), discs(kRadius)),
                alike = variation(objects(ellipse, 1, false), discs(kRadius));
-  EXPECT_GT(apart, kMostRimVariation);
+  EXPECT_GT(apart, kMaxRimVariation);
   EXPECT_LT(alike, 0.3 * apart);
 }
 
@@ -68,12 +68,12 @@ TEST(RimVariation, LeavesOutWalls) {
   std::vector<Detection> beside;
   for (const Detection& d : discs(kRadius))
     if (d.x < kPitch) beside.push_back(d);
-  EXPECT_GT(rim_variation(grey, beside, {kRadius}), 2 * kMostRimVariation);
+  EXPECT_GT(rim_variation(grey, beside, {kRadius}), 2 * kMaxRimVariation);
   EXPECT_LT(rim_variation(grey, beside, {kRadius}, {}, walls), 0.01);
   // Polygons at a wall are still no discs.
   grey = objects(polygon(4, 0.85 * kRadius), 1);
   grey(cv::Rect(0, 0, kWall, kSide)).setTo(kDark);
-  EXPECT_GT(rim_variation(grey, beside, {kRadius}, {}, walls), kMostRimVariation);
+  EXPECT_GT(rim_variation(grey, beside, {kRadius}, {}, walls), kMaxRimVariation);
 }
 
 TEST(RimVariation, OfRimsThatAreNotSeenIsNone) {
@@ -95,7 +95,7 @@ TEST(RimVariation, IsThatOfTheLeastRoundSize) {
   for (std::size_t k = 0; k < both.size(); ++k)
     if (k < kSide / kPitch) both[k].radius = 0.6 * kRadius;
   EXPECT_LT(variation(grey, both), 0.01);
-  EXPECT_GT(rim_variation(grey, both, {kRadius, 0.6 * kRadius}), 2 * kMostRimVariation);
+  EXPECT_GT(rim_variation(grey, both, {kRadius, 0.6 * kRadius}), 2 * kMaxRimVariation);
 }
 
 }  // namespace

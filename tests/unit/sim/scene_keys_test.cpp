@@ -1,7 +1,8 @@
 // The table of the keys of a scene against the reader.
 #include "sim/scene/scene_keys.hpp"
 
-#include "sim/laws/axes.hpp"
+#include "sim/laws/cell_laws.hpp"
+#include "sim/laws/law_words.hpp"
 #include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "sim/scene/scene.hpp"
@@ -42,7 +43,7 @@ std::string told(const Assignments& assignments) {
   if (s.until) tell(s.until->quantity, s.until->relative, s.until->absolute);
   number(s.scale.sigma_m);
   number(s.scale.gravity_m_s2);
-  for (const double constant : contact_constants(make_plan(s).bead, {0.5, 0.25, 6.0}, 1, 2, 2))
+  for (const double constant : contact_constants(make_plan(s).laws->bead, {0.5, 0.25, 6.0}, 1, 2, 2))
     tell(constant);
   return text;
 }

@@ -149,7 +149,7 @@ TEST(Crystal, CanonicalCellOfPaperTwoHasLayersOfTwentyFive) {
   }
 }
 
-TEST(Crystal, OfASlotIsThatOfThePlane) {
+TEST(Crystal, SlotHasTheCrystalOfThePlane) {
   for (const char* kind : {"crystal_a", "crystal_b", "random"}) {
     const std::string start = std::string("start.kind=") + kind;
     const auto plane = make_start(scene(kFlat, {"beads.count=90", start})).beads;

@@ -27,7 +27,7 @@ double oblique(const CollisionErrors& e) {
   return e.sticking();
 }
 
-TEST(CollisionErrors, OfVerletAreAnIndependentPrograms) {
+TEST(CollisionErrors, VerletErrorsAgreeWithAnIndependentProgram) {
   // Two beads of Table I, Fortini & Huang 2015, by velocity Verlet with half-step velocities in Python.
   struct Row {
     double n, rms, largest;

@@ -70,8 +70,7 @@ TEST(SweepResults, PointsAndOnsetsAreWhereTheFileStatesThem) {
   const TemporaryFolder folder;
   put_file(folder / "results.json", kResults);
   analysis::Comparison c;
-  std::vector<std::string> notes;
-  add_sweep(folder / "results.json", c, notes);
+  const std::vector<std::string> notes = add_sweep(folder / "results.json", c);
   check(c);
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_NE(notes[0].find("1 onset of beads.layers has no place in the diagram"), std::string::npos)
@@ -82,8 +81,7 @@ TEST(SweepResults, AnOnsetInAnotherMeasureOfTheDriveIsConverted) {
   const TemporaryFolder folder;
   put_file(folder / "results.json", kOtherKeys);
   analysis::Comparison c;
-  std::vector<std::string> notes;
-  add_sweep(folder / "results.json", c, notes);
+  const std::vector<std::string> notes = add_sweep(folder / "results.json", c);
   ASSERT_EQ(c.boundaries.size(), 2U);
   EXPECT_NEAR(c.boundaries[0].below.value(), 1.6, 1e-12);
   EXPECT_NEAR(c.boundaries[0].gamma().value(), 2.0, 1e-12);
@@ -104,8 +102,7 @@ TEST(SweepResults, AFileWithoutConditionsIsToBeCollectedAgain) {
             [{"axes": {}, "key": "drive.gamma", "verdict": "bouncing", "runs": 3}]})"}) {
     put_file(folder / "results.json", text);
     analysis::Comparison c;
-    std::vector<std::string> notes;
-    expect_refusal<InputError>([&] { add_sweep(folder / "results.json", c, notes); },
+    expect_refusal<InputError>([&] { add_sweep(folder / "results.json", c); },
                                "does not state its N_l, Gamma and start",
                                "collect it again with `twincell sweep collect`");
   }
@@ -114,7 +111,6 @@ TEST(SweepResults, AFileWithoutConditionsIsToBeCollectedAgain) {
 TEST(SweepResults, AnythingElseIsRefused) {
   const TemporaryFolder folder;
   analysis::Comparison c;
-  std::vector<std::string> notes;
   for (const char* text : {"", "[]", "{\"format\": \"else\"}", "{\"format\": \"twincell sweep 1\"}",
                            // A key of a point or an onset is missing or has another type.
                            R"({"format": "twincell sweep 1", "plan": "", "points": 3})",
@@ -129,7 +125,7 @@ TEST(SweepResults, AnythingElseIsRefused) {
                                "onsets": [{"conditions": {"n_l": 20, "start": "random"}, "verdict": "bouncing",
                                            "key": "drive.gamma"}]})"}) {
     put_file(folder / "results.json", text);
-    EXPECT_THROW(add_sweep(folder / "results.json", c, notes), InputError) << text;
+    EXPECT_THROW(add_sweep(folder / "results.json", c), InputError) << text;
   }
 }
 
@@ -141,13 +137,12 @@ TEST(SweepResults, ASweepCountsOnceAndHasAPlaceInTheDiagram) {
             [{"id": "w", "conditions": {"n_l": null, "gamma": null, "start": "table"},
               "results": {"phase": {"value": "bouncing"}}}]})");
   analysis::Comparison c;
-  std::vector<std::string> notes;
   expect_refusal<ConfigError>(
       [&] {
-        add_sweeps({folder / "a.json", folder / "b.json"}, c, notes);
+        add_sweeps({folder / "a.json", folder / "b.json"}, c);
       },
       "a.json and ", "hold the same points; name the sweep once");
-  expect_refusal<InputError>([&] { add_sweep(folder / "none.json", c, notes); },
+  expect_refusal<InputError>([&] { add_sweep(folder / "none.json", c); },
                              "no point of the sweep has a place in the diagram", "results of its plan");
 }
 

@@ -106,7 +106,7 @@ TEST(BedFlight, FollowsTheComponentOfGravityThatPointsAtThePlate) {
 }
 
 // Walls along z move, the plate does not: its stored height is 0, and the drive throws nothing.
-TEST(BedFlight, OfAPlateThatRestsIsUnknown) {
+TEST(BedFlight, RestingPlateGivesNoResult) {
   const auto film = test::rigid_bed({.gamma = 1.7, .columns = 8, .rows = 3, .phases = 20, .cycles = 8});
   MemoryTrajectory rests(film.info());
   for (Frame frame : film.frames()) {
@@ -116,7 +116,7 @@ TEST(BedFlight, OfAPlateThatRestsIsUnknown) {
   EXPECT_EQ(find_result(analyze(rests, {.only = {"flight_time"}}), "flight_time").absent, "the plate rests");
 }
 
-TEST(BedFlight, OfTheRigidBedIsThatOfItsParabola) {
+TEST(BedFlight, RigidBedAgreesWithItsParabola) {
   for (const double gamma : {1.15, 1.3, 1.7, 2.2, 3.0})
     for (const int phases : {20, 60}) {
       const auto film =
@@ -130,7 +130,7 @@ TEST(BedFlight, OfTheRigidBedIsThatOfItsParabola) {
     }
 }
 
-TEST(BedFlight, OfAFilmWithNoiseIsTheSame) {
+TEST(BedFlight, PixelNoiseDoesNotChangeIt) {
   // 195 beads measured to 0.03 sigma each give the centre of mass to 0.002 sigma.
   const auto clean = test::rigid_bed({.gamma = 2.0, .cycles = 60});
   const Result flight =
@@ -143,7 +143,7 @@ TEST(BedFlight, OfAFilmWithNoiseIsTheSame) {
 }
 
 // The second difference of 60 beads is uncertain by 0.1 g.
-TEST(BedFlight, OfFewNoisyBeadsIsNotCut) {
+TEST(BedFlight, FewNoisyBeadsKeepTheirFlights) {
   for (const int phases : {20, 40})
     for (const double gamma : {1.5, 2.0}) {
       const auto clean =
@@ -199,7 +199,7 @@ TEST(BedFlight, BeadsThatComeAndGoDoNotBreakFlights) {
   EXPECT_NEAR(measured(seen, "flight_share"), measured(whole, "flight_share"), 1e-6);
 }
 
-TEST(BedFlight, WhatItCannotTell) {
+TEST(BedFlight, UndecidableCasesGiveNoResult) {
   const auto absent = [](MemoryTrajectory film) {
     const auto results = analyze(film, {.only = {"flight_time", "flight_share"}});
     return find_result(results, "flight_share").absent;
@@ -216,7 +216,7 @@ TEST(BedFlight, WhatItCannotTell) {
 
 // A bead of restitution e on its period-1 orbit (Mehta & Luck 1990 and earlier) is always in flight, one
 // period per flight.
-TEST(BedFlight, OfABeadThatReboundsEveryPeriod) {
+TEST(BedFlight, ReboundingBead) {
   const double e = 0.5, gamma = 1.3, speed = std::numbers::pi;
   const double phase = std::acos(std::numbers::pi * (1 - e) / ((1 + e) * gamma));
   MemoryTrajectory film(test::rigid_bed_info({.gamma = gamma, .columns = 1, .rows = 1}));

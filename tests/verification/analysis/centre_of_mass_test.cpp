@@ -13,7 +13,7 @@
 using namespace twincell;
 using namespace twincell::analysis;
 
-TEST(CentreOfMass, OfTheBouncingRigidBed) {
+TEST(CentreOfMass, BouncingRigidBed) {
   const test::RigidBed bed{.gamma = 1.5, .columns = 10, .rows = 4, .phases = 40, .cycles = 6};
   // Rows at 1/2 + k sqrt(3)/2 with 10, 9, 10, 9 beads.
   const double rest = 0.5 + std::sqrt(3.0) / 2 * (0 * 10 + 1 * 9 + 2 * 10 + 3 * 9) / 38.0;

@@ -76,7 +76,7 @@ std::vector<Correlated> many_correlated(std::size_t n, double a, Random& random)
 struct Counts {
   int of = 0, held = 0, above = 0, none = 0;
 };
-std::set<std::string>& counted() {
+std::set<std::string>& plural() {
   static std::set<std::string> names;
   return names;
 }
@@ -104,7 +104,7 @@ void cover(const std::string& what, const Generator& make, int cycles, const Tru
       c.above += r.interval->low > expected ? 1 : 0;
     }
   for (const auto& [name, c] : counts) {
-    counted().insert(name);
+    plural().insert(name);
     std::printf("COVERAGE|%s|%s|%d|%d|%.1f|%.1f|%.1f\n", name.c_str(), what.c_str(), cycles, c.of,
                 100.0 * c.held / c.of, 100.0 * (c.of - c.held - c.above) / c.of, 100.0 * c.above / c.of);
     EXPECT_GT(c.of, kTrajectories / 2) << name << ", " << what;
@@ -502,7 +502,7 @@ void cover_contact_forces() {
   cover("a pressed column", pressed, 80, long_run(pressed, 40000, names, {}, 16), {}, 17);
 }
 
-TEST(Coverage, OfEveryResultThatHasAnInterval) {
+TEST(Coverage, EveryResultWithAnInterval) {
   cover_temperatures();
   cover_heights_and_volume_fractions();
   cover_order_grains_and_defects();
@@ -586,7 +586,7 @@ TEST(Coverage, OfEveryResultThatHasAnInterval) {
                                          "contact_force_density_high",
                                          "contact_force_ratio"};
   for (const std::string& name : result_names())
-    EXPECT_NE(without.contains(name), counted().contains(name)) << name;
+    EXPECT_NE(without.contains(name), plural().contains(name)) << name;
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 // V5.1, V5.2: q6, psi6, psi4 of exact neighbourhoods (closed forms of the planar Steinhardt parameter), and
 // their invariances.
-#include "analysis/order/order.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "analysis/order/bond_order.hpp"
 #include "tests/support/validation.hpp"
 
 using namespace twincell;

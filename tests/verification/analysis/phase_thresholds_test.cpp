@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "analysis/motion/bed_phase.hpp"
-#include "analysis/motion/bouncing.hpp"
+#include "analysis/motion/bouncing_measure.hpp"
 #include "tests/support/rigid_bed.hpp"
 #include "tests/support/validation.hpp"
 

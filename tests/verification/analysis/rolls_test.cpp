@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/motion/convection.hpp"
+#include "analysis/motion/convection_field.hpp"
 #include "tests/support/validation.hpp"
 
 namespace twincell::analysis {

@@ -8,12 +8,12 @@
 #include <set>
 
 #include "analysis/gas/profiles.hpp"
-#include "analysis/motion/convection.hpp"
+#include "analysis/motion/convection_field.hpp"
 #include "analysis/neighbours/voronoi.hpp"
 #include "analysis/observable/observable.hpp"
+#include "analysis/order/bond_order.hpp"
 #include "analysis/order/defects.hpp"
 #include "analysis/order/grains.hpp"
-#include "analysis/order/order.hpp"
 #include "analysis/order/orientation.hpp"
 #include "tests/support/validation.hpp"
 
@@ -348,7 +348,7 @@ TEST(Defects, PairsAreAsManyAsCanBeMade) {
   EXPECT_EQ(find_defects(cells).dislocations, 2U);
 }
 
-TEST(Grains, TwoOfKnownMisorientation) {
+TEST(Grains, TwoGrainsOfKnownMisorientation) {
   for (const double degrees : {12.0, 20.0, 30.0}) {
     std::vector<Vec3> beads = lattice(0, 0, 10, 0, 20);
     for (const Vec3& r : lattice(degrees, 10.0, 20, 0, 20))

@@ -131,7 +131,7 @@ TEST(PairCorrelation, OfABedOnWallsHasTheSameShells) {
   validate_close("neighbours in a bed with walls", n, 6, 0.2);  // by the density of the window, 3 %
 }
 
-TEST(MeanSquaredDisplacement, OfARandomWalkGrowsWithTimeAndOfStreamsWithItsSquare) {
+TEST(MeanSquaredDisplacement, LinearForARandomWalkQuadraticForStreams) {
   constexpr double kStep = 0.1;
   Random random(7);
   std::normal_distribution<double> step(0, kStep);

@@ -44,7 +44,7 @@ TEST(StructureFactor, OfPointsWithoutInteractionIsOneWithinItsInterval) {
     }
 }
 
-TEST(StructureFactor, OfATriangularLatticeIsItsNumberOfBeadsAtTheBraggPeak) {
+TEST(StructureFactor, TriangularLatticePeakEqualsN) {
   constexpr int kColumns = 16, kRows = 18;
   constexpr double kSpacing = 1.03;
   MemoryTrajectory t = empty(2, period_of_lattice(kColumns, kRows, kSpacing), true);

@@ -13,7 +13,7 @@
 #include "tests/support/validation.hpp"
 
 namespace twincell::sim {
-TEST(ContactForces, OfAColumnAreTheWeightAbove) {
+TEST(ContactForces, ColumnCarriesTheWeightAbove) {
   for (const int dimension : {2, 3}) {
     const MemoryTrajectory t = column_at_rest(dimension);
     ASSERT_TRUE(t.info().columns.contact_forces);

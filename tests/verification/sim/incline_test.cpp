@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "sim/laws/linear_collision.hpp"
 #include "tests/support/collision.hpp"
 #include "tests/support/validation.hpp"
 

@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "sim/laws/linear_collision.hpp"
 #include "tests/support/collision.hpp"
 #include "tests/support/validation.hpp"
 

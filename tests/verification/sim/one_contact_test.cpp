@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "sim/laws/axes.hpp"
 #include "tests/support/collision.hpp"
 #include "tests/support/validation.hpp"
 

@@ -14,6 +14,8 @@
 #include "sim/accuracy/impacts.hpp"
 #include "sim/accuracy/work_precision.hpp"
 #include "sim/laws/axes.hpp"
+#include "sim/laws/cell_laws.hpp"
+#include "sim/laws/law_words.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
@@ -123,9 +125,10 @@ TEST(Sliding, InSpaceItIsTheLimitOfEverSmallerSteps) {
         "sliding");
     const Plan plan = make_plan(scene);
     CollisionSetting setting;
-    setting.dimension = 3, setting.laws = &plan.bead, setting.pair = {0.5, 0.25, 7}, setting.turn = 5;
+    setting.dimension = 3, setting.laws = &plan.laws->bead, setting.pair = {0.5, 0.25, 7}, setting.turn = 5;
     ASSERT_NEAR(scene.inertia_factor, 0.4, 1e-15);
-    const CollisionEnd end = integrate_collision_with_memory(setting, touch, 0, 1, reading_of(plan.bead));
+    const CollisionEnd end =
+        integrate_collision_with_memory(setting, touch, 0, 1, reading_of(plan.laws->bead));
     ASSERT_TRUE(end.parted);
     const auto steps = by_steps(touch, keys, 20000.37);
     EXPECT_LT((steps.first - end.motion.u).norm(), 3e-6) << keys;
@@ -153,7 +156,7 @@ TEST(Sliding, CutIntoFinerStepsTheExactSolutionIsTheSame) {
       "preset = \"fortini-huang-2015\"\n[beads]\ncount = 1\n[drive]\namplitude = 0.0\n", "sliding");
   const Plan plan = make_plan(scene);
   CollisionSetting setting;
-  setting.laws = &plan.bead, setting.pair = {0.5, 0.25, 6}, setting.turn = 4;
+  setting.laws = &plan.laws->bead, setting.pair = {0.5, 0.25, 6}, setting.turn = 4;
   for (const SlipReading reading : {SlipReading::rescale, SlipReading::spring_limited, SlipReading::clip})
     for (const double v_t : {-3.0, -0.7, 0.2, 0.9, 1.5, 4.0}) {
       const RelativeMotion touch{Vec3(0, 0, 1), Vec3(v_t, 0, -1), Vec3(0, 0.3, 0)};
@@ -298,7 +301,7 @@ TEST(Sliding, AtSixStepsAContactSpinIsRightToAHundredth) {
 /// that of slower beads. Returns n itself for contacts whose duration does not depend on speed.
 double hertz_steps(const Scene& scene, double n) {
   const Plan plan = make_plan(scene);
-  const auto* hertz = std::get_if<HertzViscoelastic>(&plan.bead.normal);
+  const auto* hertz = std::get_if<HertzViscoelastic>(&plan.laws->bead.normal);
   if (hertz == nullptr) return n;
   const PairScale pair{.m_eff = scene.mass / 2, .r_eff = scene.radius / 2, .inv_m_t = 0};
   return n * plan.shortest().time / hertz->shortest_time(pair, 1);

@@ -1,0 +1,107 @@
+#include "calibration/film/track_film.hpp"
+
+#include <utility>
+
+#include "core/error.hpp"
+#include "imaging/preprocess/open_flattened.hpp"
+
+namespace twincell::calibration {
+
+namespace {
+
+/// Whether the drive is one that the cell states and the frames can contradict.
+bool checks_drive(const FilmedCell& filmed, const FilmOptions& options) {
+  return filmed.measured_drive.empty() && !options.trust_stated_drive && filmed.cell.drive();
+}
+
+/// Plans the trajectory, checks the stated drive by the motion of the bed unless the plate has decided, and
+/// records the check.
+TrackedFilm planned(FilmedCell filmed, imaging::TrackedStack stack, DriveCheck check,
+                    const FilmOptions& options, StageTimes* times) {
+  imaging::TrackPlan plan = [&] {
+    const Stage planning(times, "plan");
+    return imaging::plan_trajectory(stack, filmed.cell, stack.locator.diameter_px, options.shortest);
+  }();
+  // With neither scale nor origin, nothing relates the heights of the bed to those of the plate.
+  const bool placed = filmed.cell.pixels_per_sigma || filmed.cell.origin;
+  if (checks_drive(filmed, options) && check.by.empty() && check.disagreement.empty() && placed) {
+    const Stage checking(times, "drive check");
+    BedSteps bed(plan.info);
+    imaging::write_trajectory(stack, plan, bed);
+    check = check_by_bed(bed, plan.info, check);
+  }
+  if (plan.info.drive && filmed.measured_drive.empty()) record(check, plan.info);
+  return {std::move(filmed.cell), std::move(stack), std::move(plan), std::move(check)};
+}
+
+}  // namespace
+
+FilmedCell stated_cell(const FilmOptions& options, const imaging::FrameRange& range) {
+  FilmedCell stated{.cell = imaging::resolve_cell(options.request), .source = {}, .measured_drive = {}};
+  stated.source = imaging::phase_source(options.request.phase, stated.cell, options.request.cell_file);
+  stated.source.trusted = options.trust_stated_drive;
+  stated.cell.phase_lock = imaging::lock_of_chosen(stated.cell.phase_lock, range);
+  return stated;
+}
+
+DriveCheck check_plate(const FilmedCell& filmed, const std::filesystem::path& film,
+                       const FilmOptions& options, const ProgressOf& progress, StageTimes* times) {
+  if (!checks_drive(filmed, options)) return {.not_comparable = "the stated drive is trusted"};
+  if (film.empty()) return {};
+  const Stage checking(times, "drive check");
+  const auto edge = progress("the plate's edge");
+  return check_by_plate(filmed.cell, film, imaging::frames_of(options.locating), options.threads, *edge,
+                        filmed.source.method == imaging::PhaseMethod::fixed);
+}
+
+TrackedFilm track_filmed_cell(const OpenFrames& open, FilmedCell filmed, DriveCheck by_plate,
+                              const FilmOptions& options, const ProgressOf& progress, StageTimes* times) {
+  const imaging::CellDescription& cell = filmed.cell;
+  const imaging::LocatorOptions locator = imaging::locator_of(
+      options.locating, cell.pixels_per_sigma,
+      options.request.cell_file.empty() ? std::nullopt : std::optional<bool>(cell.bright), cell.refine);
+  const imaging::Region region = imaging::region_of(options.locating);
+  const auto frames = open(locator);
+  imaging::TrackedStack stack = [&] {
+    const auto bar = progress("track");
+    return imaging::track_stack(*frames, cell,
+                                {.locator = locator,
+                                 .link = options.link,
+                                 .phases = filmed.source,
+                                 .region = region,
+                                 .threads = options.threads,
+                                 .folder = options.folder},
+                                *bar, times);
+  }();
+  imaging::check_flat(options.locating.flat, stack.locator.preprocess.bright);
+  return planned(std::move(filmed), std::move(stack), std::move(by_plate), options, times);
+}
+
+TrackedFilm track_film(const OpenFrames& open, const std::filesystem::path& film, const FilmOptions& options,
+                       const ProgressOf& progress, StageTimes* times) {
+  FilmedCell filmed = stated_cell(options, imaging::frames_of(options.locating));
+  (void)filmed.cell.drive();  // refuse a contradictory drive before the work starts
+  DriveCheck by_plate = check_plate(filmed, film, options, progress, times);
+  return track_filmed_cell(open, std::move(filmed), std::move(by_plate), options, progress, times);
+}
+
+TrackedFilm track_table(const Table& table, imaging::LocatedTableOptions located, const FilmOptions& options,
+                        const ProgressOf& progress, StageTimes* times) {
+  if (const std::string option = imaging::option_for_frames(options.locating); !option.empty())
+    throw ConfigError({.file = table.file, .key = option},
+                      "says how the beads of frames are located; those of a table are.");
+  if (!options.locating.diameters.empty()) located.diameter_px = options.locating.diameters.front();
+  imaging::LocatedTable beads = imaging::read_located(table, located, options.folder);
+  FilmedCell filmed = stated_cell(options, beads.range);
+  (void)filmed.cell.drive();
+  imaging::TrackedStack stack = [&] {
+    const auto bar = progress("track");
+    const Stage linking(times, "linking", "links");
+    return imaging::track_located(std::move(beads), options.link, filmed.cell, filmed.source, options.folder,
+                                  *bar);
+  }();
+  DriveCheck check = check_plate(filmed, {}, options, progress, times);
+  return planned(std::move(filmed), std::move(stack), std::move(check), options, times);
+}
+
+}  // namespace twincell::calibration
