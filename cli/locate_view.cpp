@@ -12,6 +12,7 @@
 #include "cli/settings_table.hpp"
 #include "core/escape.hpp"
 #include "imaging/settings/settings_choice.hpp"
+#include "imaging/settings/settings_doubts.hpp"
 #include "imaging/track/encoded_frame.hpp"
 
 namespace twincell::cli {
@@ -225,7 +226,7 @@ std::string LocateView::page(const std::string& stack, const std::string& output
       html += fmt::format(
           "<tr{}><td>{:.0f}</td><td>{:.3f}</td><td>{}</td><td><code>{}</code>{}</td></tr>\n",
           index_of_[k] < stored_.size() ? fmt::format(" data-set=\"{}\"", index_of_[k]) : std::string(),
-          t.evidence, t.evidence / most, t.beads, html_text(options_of(t.settings, refine)),
+          t.evidence, t.evidence / most, t.beads, html_text(imaging::options_text(t.settings, refine)),
           k == 0                 ? " (chosen)"
           : t.not_chosen.empty() ? ""
                                  : " (" + html_text(t.not_chosen) + ")");

@@ -11,10 +11,6 @@
 
 namespace twincell::cli {
 
-/// The options that select settings: "--diameter 14.00 --dark --refine profile".
-/// \param refine the refiner of settings that name none
-std::string options_of(const imaging::FoundSettings& settings, const std::string& refine);
-
 /// One line for each of the settings: evidence, its share of the largest, number of beads, options. The
 /// chosen ones come first. Below it, by how much they won over the best settings with other discs. If none
 /// were chosen, those that were refused, with the reasons.
@@ -24,8 +20,7 @@ std::string settings_table(const imaging::SettingsChoice& choice, const std::str
 /// is not empty
 std::string settings_lead(const imaging::SettingsChoice& choice, const std::string& refine);
 
-/// Warnings: a sentence with the options of the runner-up if the chosen settings won narrowly, and a sentence
-/// if objects that are not round explain more. Empty if there is no reason for doubt.
+/// imaging::settings_doubts, one a line. Empty if there is no reason for doubt.
 std::string settings_warnings(const imaging::SettingsChoice& choice, const std::string& refine);
 
 /// What was found in the frames, in sentences that name the options: diameters, model, contrast and polarity.

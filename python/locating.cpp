@@ -303,13 +303,11 @@ py::object track(const py::object& said, TrackCall call, const py::object& callb
     write(memory);
     trajectory = std::make_shared<Trajectory>(std::move(memory));
   }
-  for (const std::string& doubt : doubts) PyErr_WarnEx(PyExc_UserWarning, doubt.c_str(), 2);
-  if (!film.stack.spacing_doubt.empty()) PyErr_WarnEx(PyExc_UserWarning, film.stack.spacing_doubt.c_str(), 2);
-  if (!film.stack.phases.warning.empty())
-    PyErr_WarnEx(PyExc_UserWarning, (film.stack.phases.warning + ".").c_str(), 2);
+  for (const std::string& doubt : doubts) warn(doubt);
+  if (!film.stack.spacing_doubt.empty()) warn(film.stack.spacing_doubt);
+  for (const std::string& doubt : film.stack.doubts(film.cell)) warn(doubt);
   if (!film.check.disagreement.empty())
-    PyErr_WarnEx(PyExc_UserWarning,
-                 ("the stated drive does not fit the film: " + film.check.disagreement + ".").c_str(), 2);
+    warn("the stated drive does not fit the film: " + film.check.disagreement + ".");
   return py::cast(trajectory);
 }
 

@@ -89,6 +89,10 @@ void translate(std::exception_ptr thrown) {
 
 }  // namespace
 
+void warn(const std::string& sentence) {
+  if (PyErr_WarnEx(PyExc_UserWarning, sentence.c_str(), 2) != 0) throw py::error_already_set();
+}
+
 namespace {
 
 /// The handler of Python, which the watch replaces.

@@ -141,4 +141,7 @@ void bind_observables(py::module_& module);
 void bind_simulation(py::module_& module);
 void bind_verbs(py::module_& module);
 
+/// Issues a UserWarning. \throws py::error_already_set if warnings are errors
+void warn(const std::string& sentence);
+
 }  // namespace twincell::python

@@ -22,10 +22,6 @@ namespace {
 
 constexpr const char* kHeader = "sim/run/simulation.hpp";
 
-void warn(const std::string& sentence) {
-  if (PyErr_WarnEx(PyExc_UserWarning, sentence.c_str(), 2) != 0) throw py::error_already_set();
-}
-
 std::string provenance_of_run(const sim::Scene& scene, const std::vector<sim::Bead>& beads,
                               const std::string& call, int threads) {
   Provenance provenance = provenance_of(call);

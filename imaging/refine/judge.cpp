@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/median.hpp"
@@ -88,23 +89,36 @@ void flag_overlaps(std::vector<Detection>& beads) {
   }
 }
 
+/// The limit below which the interiors, times `sign`, are those of a population of their own: at most
+/// `limit`. \returns nothing if there is none
+std::optional<double> limit_of_population(const std::vector<double>& interior, double sign, double limit) {
+  std::vector<double> sorted;
+  sorted.reserve(interior.size());
+  for (const double v : interior) sorted.push_back(sign * v);
+  std::sort(sorted.begin(), sorted.end());
+  // The limit lies below the other beads, and in or above the gap.
+  const std::size_t split = separate_population(sorted, limit);
+  if (split == 0) return std::nullopt;
+  return std::min(limit, sorted[split]);
+}
+
 void flag_tracers(std::vector<Detection>& beads, double below) {
   if (beads.empty()) return;
   std::vector<double> interior;
   interior.reserve(beads.size());
   for (const Detection& b : beads) interior.push_back(b.interior);
   const double typical = upper_median(interior);
-  double limit = below * typical;
-  std::vector<double> sorted = interior;
-  std::sort(sorted.begin(), sorted.end());
-  // The limit lies below the other beads, and in or above the gap.
-  const std::size_t split = separate_population(sorted, limit);
-  if (split > 0) limit = std::min(limit, sorted[split]);
+  double sign = 1, limit = below * typical;
+  std::optional<double> found = limit_of_population(interior, sign, limit);
+  // Among opaque beads tracers are paler. Among beads that let light through they may be darker instead.
+  if (!found && below > 0)
+    if (const auto darker = limit_of_population(interior, -1, -typical / below)) sign = -1, found = darker;
+  if (found) limit = *found;
   constexpr double kMinScatter = 0.005;
   const double scatter = std::max(kMinScatter, robust_spread(std::move(interior), typical));
   for (Detection& b : beads) {
-    b.tracer = split > 0 && b.interior < limit;
-    b.tracer_margin = std::abs(b.interior - limit) / scatter;
+    b.tracer = found && sign * b.interior < limit;
+    b.tracer_margin = std::abs(sign * b.interior - limit) / scatter;
   }
 }
 

@@ -16,7 +16,7 @@ struct JudgeOptions {
   double min_score = 0.5;              ///< Detection::score
   bool pale = false;                   ///< a pale disc (RefineOptions) is as pale inside as at its rim
   double max_overlap = 0.25;  ///< largest overlap of two discs, in radii; beyond it the worse is dropped
-  double tracer_below = 0.8;  ///< a tracer's interior is below this fraction of the median
+  double tracer_below = 0.8;  ///< a tracer's interior is below this fraction of the median; 0: no tracers
   /// Discs that are not beads are dropped (outlier_discs.hpp). For one size that the picture gave: beads of a
   /// stated size are beads, and beads of many sizes are too unlike each other.
   bool drop_outliers = false;
@@ -30,9 +30,9 @@ struct Judged {
 
 /// Rejects candidates that cannot be an opaque disc (wrong radius, bright inside, unexplained ring, overlap
 /// with a better one) and centres outside the frame. Flags discs that are cut by the frame, and tracers:
-/// beads with interiors below tracer_below of the median, if a gap separates them from the rest that one
-/// population with a log-concave distribution shows in at most one of a thousand frames. Pure. \param width,
-/// height of the frame, px
+/// beads with interiors below tracer_below of the median, or, if there are none, above median/tracer_below,
+/// if a gap separates them from the rest that one population with a log-concave distribution shows in at most
+/// one of a thousand frames. Pure. \param width, height of the frame, px
 Judged judge(std::vector<Detection> candidates, double radius_px, int width, int height,
              const JudgeOptions& options);
 

@@ -176,26 +176,62 @@ std::vector<Hypothesis> hypotheses(const cv::Mat& grey, const LocatorOptions& gi
   return all;
 }
 
-/// Pale plain discs, if they explain clearly more than the best settings so far. With grey discs a dark rim
-/// does little harm, so if a common profile is the best model, it must have the shape of a plain disc's
-/// profile.
-std::optional<FoundSettings> find_pale(const cv::Mat& grey, const LocatorOptions& given, double lattice,
-                                       const std::optional<FoundSettings>& best) {
-  if (model_of(given.refine) != DiscModel::plain) return std::nullopt;
-  const std::vector<Hypothesis> all = hypotheses(grey, given, lattice, true);
-  if (all.empty()) return std::nullopt;
+/// Pale discs of the sizes of hypotheses, each with the median darkness of those that are located. Walls that
+/// are darker than the discs hide the contrast of the discs from contrast_of().
+std::vector<Hypothesis> pale_among(const cv::Mat& grey, const LocatorOptions& given,
+                                   const std::vector<Hypothesis>& sizes) {
+  constexpr std::size_t kMinDiscs = 10;
+  std::vector<Hypothesis> pale;
+  for (Hypothesis h : sizes) {
+    LocatorOptions options = given;
+    options.diameter_px = h.diameter_px;
+    options.preprocess.bright = h.bright;
+    options.refine.pale = true;
+    std::vector<double> darkness;
+    for (const Detection& d : locate(grey, options).beads) darkness.push_back(d.darkness);
+    if (darkness.size() < kMinDiscs) continue;
+    h.contrast = upper_median(std::move(darkness));
+    if (h.contrast < kPale) pale.push_back(h);
+  }
+  return pale;
+}
+
+/// Pale plain discs.
+struct PaleDiscs {
+  std::optional<FoundSettings> best;  ///< nothing: there are none
+  bool preferred = false;             ///< they explain clearly more than the best settings so far
+};
+
+/// Pale plain discs, and whether they are preferred to the best settings so far. With grey discs a dark rim
+/// does little harm, so to be preferred to a common profile, they need one with the shape of a plain disc's
+/// profile; neighbours that touch change that shape, so that otherwise the evidence decides.
+PaleDiscs find_pale(const cv::Mat& grey, const LocatorOptions& given, double lattice,
+                    std::vector<Hypothesis> sizes, const std::optional<FoundSettings>& best) {
+  if (model_of(given.refine) != DiscModel::plain) return {};
+  std::vector<Hypothesis> all = hypotheses(grey, given, lattice, true);
+  if (all.empty() && best) {
+    constexpr double kSameSize = 0.2;  // pale discs are at best found with another model, of about their size
+    std::erase_if(sizes, [&](const Hypothesis& h) {
+      return h.bright != best->bright || std::abs(h.diameter_px / best->diameter_px - 1) > kSameSize;
+    });
+    if (sizes.empty()) sizes.push_back({best->bright, best->diameter_px});
+    all = pale_among(grey, given, sizes);
+  }
+  if (all.empty()) return {};
   double to_beat = best ? kPaleClearly * best->explained : 0;
+  bool comparable = true;
   if (best && best->method == kProfileRefiner.word) {
     const ProfileTrial trial = try_profile(grey, given, {best->bright, best->diameter_px});
-    if (trial.explained > 0 && !trial.has_plain_shape()) return std::nullopt;
+    comparable = trial.explained <= 0 || trial.has_plain_shape();
     to_beat = trial.explained;
   }
-  std::optional<FoundSettings> pale;
+  PaleDiscs pale;
+  double most = comparable ? to_beat : 0;
   for (const Hypothesis& h : all) {
     const Trial trial = settle_plain(grey, given, h);
-    if (trial.explained <= to_beat) continue;
-    to_beat = trial.explained;
-    pale = FoundSettings{trial.diameter_px, h.bright, trial.explained, {}, {}, h.contrast};
+    if (trial.explained <= most) continue;
+    most = trial.explained;
+    pale = {FoundSettings{trial.diameter_px, h.bright, trial.explained, {}, {}, h.contrast}, comparable};
   }
   return pale;
 }
@@ -287,9 +323,11 @@ class SettingsSearch {
       if (auto found =
               select_profile_model(frame_, given_, hypotheses_, *best_, lattice_, threads_, profiles))
         best_ = found;
-    if (auto pale = find_pale(grey_, given_, lattice_, best_)) best_ = pale;
+    const PaleDiscs pale = find_pale(grey_, given_, lattice_, hypotheses_, best_);
+    if (pale.preferred) best_ = pale.best;
     if (best_) candidates_.insert(candidates_.begin(), *best_);
     for (const FoundSettings& p : best_profiles(profiles)) candidates_.push_back(p);
+    if (pale.best && !pale.preferred) candidates_.push_back(*pale.best);
     if (given_.diameter_px <= 0) patterned_ = find_patterned(frame_, given_);
     if (patterned_) candidates_.push_back(*patterned_);
   }

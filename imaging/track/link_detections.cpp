@@ -125,11 +125,12 @@ PhaseTable determine_phases(const DetectionStore& located, const LinkOptions& li
   return table;
 }
 
-/// Smallest and largest number of beads of a frame; 0, 0 without frames.
+/// Smallest and largest number of beads of a frame that shows any; 0, 0 if none does.
 std::pair<std::size_t, std::size_t> fewest_and_most(const DetectionStore& frames) {
-  std::size_t fewest = frames.empty() ? 0 : frames.count(0), most = fewest;
-  for (std::size_t f = 1; f < frames.size(); ++f) {
-    fewest = std::min(fewest, frames.count(f));
+  std::size_t fewest = 0, most = 0;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    if (frames.count(f) == 0) continue;
+    fewest = fewest == 0 ? frames.count(f) : std::min(fewest, frames.count(f));
     most = std::max(most, frames.count(f));
   }
   return {fewest, most};
@@ -154,6 +155,23 @@ std::string LinkedDetections::missing_beads() const {
       "the frames hold {} to {} beads: beads leave the picture, or are not found in every frame; N_l, the "
       "results and a twin count only those that are seen",
       fewest, most);
+}
+
+std::string LinkedDetections::empty_frames() const {
+  constexpr std::size_t kMaxNamed = 5;
+  std::size_t empty = 0;
+  std::string named;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    if (frames.count(f) > 0) continue;
+    if (empty < kMaxNamed) named += fmt::format("{}{}", empty == 0 ? "" : ", ", f);
+    ++empty;
+  }
+  if (empty == 0 || empty == frames.size()) return {};
+  return fmt::format(
+      "{} no bead ({}{}{}, counted from the first that was read), as a black frame does; links bridge "
+      "up to --memory of them in a row",
+      empty == 1 ? "one frame shows" : fmt::format("{} frames show", empty),
+      empty == 1 ? "frame " : "frames ", named, empty > kMaxNamed ? ", ..." : "");
 }
 
 std::string LinkedDetections::surplus_tracks() const {
@@ -195,6 +213,21 @@ std::string LinkedDetections::still_discs() const {
 
 namespace {
 
+/// The frames that are linked. Up to `memory` frames in a row without beads, as black frames are, are left
+/// out: their neighbours are linked as if they had not been taken. Longer gaps end the tracks.
+std::vector<std::size_t> linked_frames(const DetectionStore& located, int memory) {
+  std::vector<std::size_t> linked;
+  for (std::size_t f = 0; f < located.size();) {
+    std::size_t end = f;
+    while (end < located.size() && located.count(end) == 0) ++end;
+    if (end - f > static_cast<std::size_t>(memory))
+      for (std::size_t k = f; k < end; ++k) linked.push_back(k);
+    if (end < located.size()) linked.push_back(end);
+    f = end + 1;
+  }
+  return linked;
+}
+
 /// Links the frames with the phases of `stack`. \param motion collects the motion of the bed, without
 /// the frames of `repeats`; null: not needed
 void link_frames(const DetectionStore& located, LinkOptions link, const CellDescription& cell,
@@ -209,9 +242,11 @@ void link_frames(const DetectionStore& located, LinkOptions link, const CellDesc
   struct Seen : FrameOfBeads {
     std::vector<TrackedBead> beads;
   };
-  auto read = [&](std::size_t f) {
+  const std::vector<std::size_t> linked = linked_frames(located, link.memory);
+  auto read = [&](std::size_t k) {
     Seen frame;
-    if (f >= located.size()) return frame;
+    if (k >= linked.size()) return frame;
+    const std::size_t f = linked[k];
     frame.beads = located[f];
     for (const TrackedBead& b : frame.beads) {
       frame.places.push_back(place_of(b));
@@ -219,16 +254,24 @@ void link_frames(const DetectionStore& located, LinkOptions link, const CellDesc
     }
     const FramePhase at = stack.phases.at(static_cast<std::int64_t>(f));
     frame.time = {.interval = at.interval, .phase = at.phase, .cycle = at.cycle};
+    for (std::size_t left_out = k > 0 ? linked[k - 1] + 1 : f; left_out < f; ++left_out)
+      frame.time.interval += stack.phases.at(static_cast<std::int64_t>(left_out)).interval;
     return frame;
   };
-  linker.begin(initial_velocities(link, stack.phases.frames_per_cycle, located.size(), read));
+  linker.begin(initial_velocities(link, stack.phases.frames_per_cycle, linked.size(), read));
   Seen next = read(0);
+  std::size_t n_linked = 0;
   for (std::size_t f = 0; f < located.size(); ++f) {
-    Seen frame = std::exchange(next, read(f + 1));
+    if (n_linked == linked.size() || linked[n_linked] != f) {
+      if (motion != nullptr && !is_repeat(repeats, f)) motion->add({}, {}, linker.mean_step());
+      stack.frames.append({});
+      continue;
+    }
+    Seen frame = std::exchange(next, read(++n_linked));
     std::vector<TrackedBead>& beads = frame.beads;
     const FrameAhead ahead{next.places, next.time, next.tracers};
     const std::vector<std::int64_t> ids =
-        linker.next(frame.places, frame.time, frame.tracers, f + 1 < located.size() ? &ahead : nullptr);
+        linker.next(frame.places, frame.time, frame.tracers, n_linked < linked.size() ? &ahead : nullptr);
     if (motion != nullptr && !is_repeat(repeats, f)) motion->add(beads, ids, linker.mean_step());
     stack.tracks.resize(static_cast<std::size_t>(linker.n_tracks()));
     for (std::size_t k = 0; k < beads.size(); ++k) {

@@ -55,8 +55,11 @@ struct LinkedDetections {
   /// identity was lost, or the tracer entered or left.
   [[nodiscard]] std::vector<std::int64_t> broken_tracers() const;
   /// A sentence, without a full stop, if some frame holds less than 0.95 of the beads of another: beads leave
-  /// the picture, or are not found in every frame. Empty otherwise.
+  /// the picture, or are not found in every frame. Frames without beads do not count. Empty otherwise.
   [[nodiscard]] std::string missing_beads() const;
+  /// A sentence, without a full stop, that names frames without beads in a film with beads, as black frames
+  /// are. Empty if there are none.
+  [[nodiscard]] std::string empty_frames() const;
   /// A sentence, without a full stop, if there are more than 1.2 times as many tracks as beads in any frame.
   /// Empty otherwise.
   [[nodiscard]] std::string surplus_tracks() const;

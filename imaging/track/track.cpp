@@ -14,6 +14,7 @@
 #include "imaging/refine/paler_discs.hpp"
 #include "imaging/settings/check_scale.hpp"
 #include "imaging/settings/configure_locator.hpp"
+#include "imaging/settings/settings_doubts.hpp"
 #include "imaging/stack/repeated_frames.hpp"
 #include "imaging/track/inside_cell.hpp"
 #include "imaging/track/locate_stack.hpp"
@@ -161,8 +162,9 @@ std::string TrackedStack::paler_doubt() const {
 
 std::vector<std::string> TrackedStack::doubts(const CellDescription& cell) const {
   std::vector<std::string> all;
-  for (const std::string& doubt : {phases.warning, missing_beads(), paler_doubt(), surplus_tracks(),
-                                   scale_doubt(cell), aspect_doubt(), still_discs()})
+  for (const std::string& doubt : settings_doubts) all.push_back(doubt + ".");
+  for (const std::string& doubt : {phases.warning, missing_beads(), empty_frames(), paler_doubt(),
+                                   surplus_tracks(), scale_doubt(cell), aspect_doubt(), still_discs()})
     if (!doubt.empty()) all.push_back(doubt + ".");
   return all;
 }
@@ -176,9 +178,12 @@ TrackedStack track_stack(FrameSource& stack, const CellDescription& cell, const 
   RegionFrames seen(watched, given.region);
   FramesAhead frames(seen);
   TrackingOptions options = given;
+  std::vector<std::string> doubts;
   {
     const Stage configuring(times, "settings");
-    options.locator = configure_locator(frames, given.locator, given.threads).locator;
+    const LocatorConfiguration found = configure_locator(frames, given.locator, given.threads);
+    options.locator = found.locator;
+    doubts = settings_doubts(found.choice, given.locator.refine.method);
     if (given.locator.diameter_of_scale)
       check_bead_size(frames, given.locator, options.locator, given.threads);
   }
@@ -196,6 +201,7 @@ TrackedStack track_stack(FrameSource& stack, const CellDescription& cell, const 
                        watched.size().height, detected.outside_cell, detected.wrong_radius,
                        detected.paler};
   tracked.aspect = detected.aspect;
+  tracked.settings_doubts = std::move(doubts);
   return tracked;
 }
 

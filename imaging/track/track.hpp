@@ -40,8 +40,9 @@ struct TrackedStack : LinkedDetections {
   std::size_t wrong_radius = 0;  ///< candidates excluded as discs of another size
   std::size_t paler = 0;  ///< candidates in the cell excluded as discs of another darkness (paler_discs.hpp)
   FrameRange range = {};  ///< numbers of the frames, which become the steps of the trajectory
-  std::string spacing_doubt = {};     ///< of a table: beads overlap or are listed twice, a sentence
-  bool has_errors = true;             ///< the standard errors of the positions are known
+  std::string spacing_doubt = {};  ///< of a table: beads overlap or are listed twice, a sentence
+  std::vector<std::string> settings_doubts = {};  ///< settings_doubts.hpp, of the settings that were found
+  bool has_errors = true;                         ///< the standard errors of the positions are known
   std::optional<Aspect> aspect = {};  ///< height over width of the beads in a dozen frames of the stack
   /// Says that no bead is about one sigma wide (10 %); empty if one is, or the scale is unknown.
   [[nodiscard]] std::string scale_doubt(const CellDescription& cell) const;

@@ -46,6 +46,18 @@ std::size_t tracers(const std::vector<double>& interiors) {
       std::count_if(j.beads.begin(), j.beads.end(), [](const Detection& b) { return b.tracer; }));
 }
 
+// Beads that let light through, with opaque tracers; opaque beads with pale tracers; and neither.
+TEST(Judge, TracersAreDarkerAmongPaleBeads) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(0, 0.02);
+  for (const auto& [beads, few, expected] :
+       {std::tuple(0.45, 0.95, 24U), {0.95, 0.6, 24U}, {0.45, 0.5, 0U}, {0.95, 1.0, 0U}}) {
+    std::vector<double> interiors;
+    for (int k = 0; k < 200; ++k) interiors.push_back((k % 8 == 3 && k < 192 ? few : beads) + noise(random));
+    EXPECT_EQ(tracers(interiors), expected) << beads << ' ' << few;
+  }
+}
+
 // One population: at most one frame in a thousand has tracers, as documented. The frames have the scatter of
 // translucent discs, so that many beads lie below 0.8 of the median; the exponential tail is the worst case.
 TEST(Judge, OnePopulationHasNoTracers) {

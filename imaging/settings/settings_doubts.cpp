@@ -1,0 +1,35 @@
+#include "imaging/settings/settings_doubts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "imaging/settings/settings_choice.hpp"
+
+namespace twincell::imaging {
+
+std::string options_text(const FoundSettings& settings, const std::string& refine) {
+  std::string text = fmt::format("--diameter {:.2f}", settings.diameter_px);
+  for (const double other : settings.other_diameters_px) text += fmt::format(" {:.2f}", other);
+  text += settings.bright ? " --bright" : " --dark";
+  const std::string& method = settings.method.empty() ? refine : settings.method;
+  return text + " --refine " + method;
+}
+
+std::vector<std::string> settings_doubts(const SettingsChoice& choice, const std::string& refine) {
+  std::vector<std::string> doubts;
+  if (const std::size_t k = narrow_runner_up(choice); k > 0)
+    doubts.push_back(
+        fmt::format("other settings explain the picture nearly as well; compare the overlays of twincell "
+                    "locate --overlay without options and with {}",
+                    options_text(choice.tried[k].settings, refine)));
+  if (std::any_of(choice.tried.begin(), choice.tried.end(), [&](const TriedSettings& t) {
+        return !is_round(t) && t.evidence > choice.tried.front().evidence;
+      }))
+    doubts.emplace_back(
+        "objects that are not round explain more of the picture than the beads do: check the overlay of "
+        "twincell locate --overlay; --explain lists them");
+  return doubts;
+}
+
+}  // namespace twincell::imaging
