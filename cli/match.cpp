@@ -1,7 +1,6 @@
 // twincell match STACKS... CELL.toml: builds the twin of each filmed cell and compares both sides.
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -9,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/report/report.hpp"
+#include "cli/cell_notes.hpp"
 #include "cli/comparing_options.hpp"
 #include "cli/locating_options.hpp"
 #include "cli/phase_options.hpp"
@@ -18,7 +18,6 @@
 #include "core/plural.hpp"
 #include "imaging/stack/different_stacks.hpp"
 #include "imaging/stack/open_frames.hpp"
-#include "trajectory/unit_checks.hpp"
 #include "twin/cell_names.hpp"
 #include "twin/twin.hpp"
 
@@ -46,15 +45,6 @@ twin::TwinProvenance provenance_of(const Common& common, const twin::TwinOptions
               [&common](const sim::Scene& scene, const std::vector<sim::Bead>& beads) {
                 return scene_provenance(common, scene, beads, {});
               }};
-}
-
-/// Notes the values of the cell that replace measured ones, and those whose units are doubtful.
-void note_cell(const Common& common, const std::filesystem::path& cell_file) {
-  const imaging::CellDescription cell = imaging::read_cell(cell_file);
-  if (!cell.included.overridden.empty())
-    note(common, fmt::format("values in {} take precedence over those measured in {}: {}", cell_file.string(),
-                             cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
-  for (const std::string& doubt : implausible_numbers(cell.shaken_cell())) note(common, doubt);
 }
 
 /// The options of the comparison of the twins with their experiments.
@@ -110,7 +100,7 @@ twin::TwinOptions options_of(const MatchOptions& o, const Common& common, const 
 /// Makes the twin of one stack in `folder`, and notes what is doubtful about it.
 twin::Twin make_noted_twin(const Common& common, const twin::TwinOptions& options,
                            const std::filesystem::path& folder) {
-  note_cell(common, options.cell_file());
+  note_cell(common, imaging::read_cell(options.cell_file()), options.cell_file());
   twin::Twin twin = twin::make_twin(options, folder, provenance_of(common, options), progress_bars(common));
   for (const std::string& doubt : twin.doubts)
     note(common, fmt::format("{}: {}", options.stack.string(), doubt));

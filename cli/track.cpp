@@ -2,7 +2,6 @@
 // trajectory.
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <fstream>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "calibration/film/track_film.hpp"
+#include "cli/cell_notes.hpp"
 #include "cli/locating_options.hpp"
 #include "cli/named_columns.hpp"
 #include "cli/number_checks.hpp"
@@ -29,7 +29,6 @@
 #include "imaging/track/bed_in_cell.hpp"
 #include "imaging/track/write_trajectory.hpp"
 #include "trajectory/formats/h5md_file.hpp"
-#include "trajectory/unit_checks.hpp"
 
 namespace twincell::cli {
 
@@ -145,11 +144,7 @@ void print_doubts(const TrackOptions& o, const calibration::TrackedFilm& film,
                   const imaging::FrameRange& range, const Common& common) {
   const imaging::CellDescription& cell = film.cell;
   const imaging::TrackedStack& stack = film.stack;
-  if (!cell.included.overridden.empty())
-    note(common,
-         fmt::format("values in {} take precedence over those measured in {}: {}", o.film.request.cell_file,
-                     cell.included.file.string(), fmt::join(cell.included.overridden, ", ")));
-  for (const std::string& doubt : implausible_numbers(cell.shaken_cell())) note(common, doubt);
+  note_cell(common, cell, o.film.request.cell_file);
   if (!stack.spacing_doubt.empty()) note(common, stack.spacing_doubt);
   if (imaging::is_located_table(o.stack) && range.first > 0 && stack.phases.locked())
     note(common,

@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "imaging/settings/configure_locator.hpp"
-#include "tests/support/one_picture.hpp"
+#include "tests/support/look_at_picture.hpp"
 
 namespace twincell::imaging {
 namespace {
@@ -52,31 +51,11 @@ cv::Mat1b bed(double bead, double tracer, int n_tracers) {
   return grey;
 }
 
-struct Seen {
-  std::string refine;
-  double diameter_px = 0;
-  std::size_t beads = 0, tracers = 0;
-};
-
-Seen look(const cv::Mat& frame) {
-  OnePicture stack(frame);
-  FramesAhead ahead(stack);
-  LocatorOptions open;
-  open.polarity_known = false;
-  const LocatorOptions found = configure_locator(ahead, open).locator;
-  Seen seen{found.refine.method, found.diameter_px};
-  for (const Detection& b : locate(frame, found).beads) {
-    ++seen.beads;
-    seen.tracers += b.tracer ? 1 : 0;
-  }
-  return seen;
-}
-
 TEST(PaleBeads, AreFoundBetweenOpaqueWalls) {
   for (const double absorbed : {0.35, 0.4}) {
     const Seen seen = look(bed(absorbed, 0, 0));
-    EXPECT_EQ(seen.refine, "exact") << absorbed;
-    EXPECT_NEAR(seen.diameter_px, kDiameter_px, 0.1) << absorbed;
+    EXPECT_EQ(seen.settings.refine.method, "exact") << absorbed;
+    EXPECT_NEAR(seen.settings.diameter_px, kDiameter_px, 0.1) << absorbed;
     EXPECT_EQ(seen.beads, static_cast<std::size_t>(kRows * kColumns)) << absorbed;
     EXPECT_EQ(seen.tracers, 0U) << absorbed;
   }
@@ -85,7 +64,7 @@ TEST(PaleBeads, AreFoundBetweenOpaqueWalls) {
 TEST(PaleBeads, OpaqueOnesAmongThemAreTracers) {
   for (const double absorbed : {0.42}) {
     const Seen seen = look(bed(absorbed, 0.95, 13));
-    EXPECT_EQ(seen.refine, "exact") << absorbed;
+    EXPECT_EQ(seen.settings.refine.method, "exact") << absorbed;
     EXPECT_EQ(seen.beads, static_cast<std::size_t>(kRows * kColumns)) << absorbed;
     EXPECT_EQ(seen.tracers, 13U) << absorbed;
   }

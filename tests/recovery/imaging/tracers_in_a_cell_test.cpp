@@ -7,10 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "imaging/settings/configure_locator.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/track/track.hpp"
-#include "tests/support/one_picture.hpp"
+#include "tests/support/look_at_picture.hpp"
 
 namespace twincell::imaging {
 namespace {
@@ -22,23 +21,6 @@ cv::Mat first_frame(const std::filesystem::path& stack) {
   cv::Mat frame;
   open_frames(stack)->next(frame);
   return frame;
-}
-
-struct Seen {
-  LocatorOptions settings;
-  std::size_t beads = 0, tracers = 0;
-};
-
-Seen look(const cv::Mat& frame) {
-  OnePicture stack(frame);
-  FramesAhead ahead(stack);
-  LocatorOptions open;
-  open.polarity_known = false;
-  Seen seen{configure_locator(ahead, open).locator};
-  const std::vector<Detection> beads = locate(frame, seen.settings).beads;
-  seen.beads = beads.size();
-  for (const Detection& b : beads) seen.tracers += b.tracer ? 1 : 0;
-  return seen;
 }
 
 // Six layers in a cell of ten diameters: a quarter of the beads show a third of their rims, and most of those
