@@ -87,7 +87,9 @@ std::string settings_table(const imaging::SettingsChoice& choice, const std::str
 
 std::string settings_lead(const imaging::SettingsChoice& choice, const std::string& refine) {
   const std::size_t k = imaging::runner_up(choice);
-  if (k == 0) return "no other discs were considered\n";
+  if (k == 0)
+    return choice.tried.size() > 1 ? "the other settings describe the same discs, or some of them\n"
+                                   : "no other settings explain a part of the picture\n";
   const double lead = choice.tried.front().evidence - choice.tried[k].evidence;
   const std::string other = imaging::options_text(choice.tried[k].settings, refine);
   if (lead < 0)

@@ -38,11 +38,11 @@ inline double robust_spread(std::vector<double> values, double middle = 0) {
 
 /// Upper median of the first n of a few values. Each value is compared with all others, vectorised and
 /// without branches; for thirty values this is several times faster than sorting.
-/// \param n 1 .. kMost; no value may be NaN
-template <class T, std::size_t kMost>
-T upper_median_of_few(std::array<T, kMost> values, std::size_t n) {
+/// \param n 1 .. kCapacity; no value may be NaN
+template <class T, std::size_t kCapacity>
+T upper_median_of_few(std::array<T, kCapacity> values, std::size_t n) {
   constexpr std::size_t kVector = 8;  // the array is padded with infinity to whole vectors
-  static_assert(kMost % kVector == 0);
+  static_assert(kCapacity % kVector == 0);
   const std::size_t filled = (n + kVector - 1) / kVector * kVector;
   for (std::size_t k = n; k < filled; ++k) values[k] = std::numeric_limits<T>::infinity();
   const auto middle = static_cast<int>(n / 2);

@@ -1,6 +1,7 @@
 #include "imaging/cell/plate_row.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -44,6 +45,32 @@ double bar_height_px(const cv::Mat& grey, bool bright, double light, double dark
   return highest.empty() ? kNaN : value_at(highest, kPlateQuantile);
 }
 
+/// A column in which the edge of the plate is seen, and the height of the edge.
+struct ColumnEdge {
+  int x;
+  float height;
+};
+
+/// The heights without those of the stretches of columns in which something bright lies on the plate, such as
+/// the digits of a frame counter: edges that lie clearly below those of most stretches.
+std::vector<float> heights_of_plate(const std::vector<ColumnEdge>& edges, int columns) {
+  constexpr int kStretches = 8;
+  constexpr std::size_t kMinEdges = 3;
+  constexpr double kBelow_px = 4, kBelow = 0.02;  // of the width: a plate may be turned
+  std::array<std::vector<float>, kStretches> stretches;
+  for (const ColumnEdge& e : edges)
+    stretches[static_cast<std::size_t>(e.x * kStretches / columns)].push_back(e.height);
+  std::vector<float> lows;
+  for (const std::vector<float>& s : stretches)
+    if (s.size() >= kMinEdges) lows.push_back(static_cast<float>(value_at(s, kPlateQuantile)));
+  const double least = lows.empty() ? 0 : value_at(lows, 0.5) - std::max(kBelow_px, kBelow * columns);
+  std::vector<float> heights;
+  for (const std::vector<float>& s : stretches)
+    if (s.size() < kMinEdges || value_at(s, kPlateQuantile) >= least)
+      heights.insert(heights.end(), s.begin(), s.end());
+  return heights;
+}
+
 }  // namespace
 
 double plate_height_px(const cv::Mat& grey, bool bright) {
@@ -73,6 +100,7 @@ double plate_height_px(const cv::Mat& grey, bool bright) {
   // Columns: distance of the first crossing from below.
   const auto columns = static_cast<std::size_t>(grey.cols);
   std::vector<float> below(columns), heights;
+  std::vector<ColumnEdge> edges;
   std::vector<std::uint8_t> open(columns, 1);
   std::size_t left = columns, no_plate = 0;
   for (int h = 0; h < grey.rows && left > 0; ++h) {
@@ -85,8 +113,10 @@ double plate_height_px(const cv::Mat& grey, bool bright) {
         --left;
         if (h < kBorder)
           ++no_plate;
-        else
+        else {
           heights.push_back(static_cast<float>(h) - (v - half) / std::max(v - below[x], 1e-6F));
+          edges.push_back({static_cast<int>(x), heights.back()});
+        }
       }
       below[x] = v;
     }
@@ -96,7 +126,7 @@ double plate_height_px(const cv::Mat& grey, bool bright) {
   if (heights.size() < std::max(kMinColumns, static_cast<std::size_t>(kMinShareOfColumns * grey.cols)) ||
       no_plate > columns / 10)
     return kNaN;
-  return value_at(heights, kPlateQuantile);
+  return value_at(heights_of_plate(edges, grey.cols), kPlateQuantile);
 }
 
 }  // namespace twincell::imaging

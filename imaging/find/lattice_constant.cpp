@@ -8,6 +8,23 @@
 
 namespace twincell::imaging {
 
+namespace {
+
+/// Clips levels farther than 1.5 interquartile ranges from the quartiles: few vacancies would hide the weak
+/// modulation of a crystal of small beads.
+void clip_outliers(cv::Mat1f& levels) {
+  constexpr float kFence = 1.5;
+  std::vector<float> sorted(levels.begin(), levels.end());
+  std::sort(sorted.begin(), sorted.end());
+  const std::size_t quarter = sorted.size() / 4;
+  const float low = sorted[quarter], high = sorted[sorted.size() - 1 - quarter],
+              fence = kFence * (high - low);
+  cv::min(levels, high + fence, levels);
+  cv::max(levels, low - fence, levels);
+}
+
+}  // namespace
+
 double lattice_constant(const cv::Mat& grey) {
   constexpr double kBroad = 10;       // px; broader structures are removed
   constexpr double kStandsOut = 0.2;  // least prominence, of the drop to the first minimum
@@ -21,6 +38,7 @@ double lattice_constant(const cv::Mat& grey) {
   cv::Mat1f broad;
   cv::GaussianBlur(levels, broad, {0, 0}, kBroad);
   levels -= broad;
+  clip_outliers(levels);
   // Autocorrelation: by Fourier transform, with padding. The same for a picture of ones counts the pairs.
   const auto reach = static_cast<int>(std::ceil(1.5 * largest));
   const cv::Size size(cv::getOptimalDFTSize(levels.cols + reach), cv::getOptimalDFTSize(levels.rows + reach));

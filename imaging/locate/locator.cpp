@@ -85,7 +85,11 @@ void LocatorOptions::check() const {
   };
   range("diameter", diameter_px, 3, 400);
   range("min-score", find.min_score, 0.01, 1);
-  for (const double other : other_diameters_px) range("diameter", other, 3, 400);
+  for (auto other = other_diameters_px.begin(); other != other_diameters_px.end(); ++other) {
+    range("diameter", *other, 3, 400);
+    if (*other == diameter_px || std::find(other_diameters_px.begin(), other, *other) != other)
+      throw ConfigError(Where{.file = {}, .key = "diameter"}, fmt::format("has {} px twice.", *other));
+  }
   if (!other_diameters_px.empty() && model_of(refine) == DiscModel::shared_profile)
     throw ConfigError(Where{.file = {}, .key = "diameter"},
                       "has several values; discs of several sizes have no common profile.");

@@ -55,10 +55,10 @@ bool by_plate(PhaseTable& table, const PhaseLock& lock, std::span<const double> 
   if (reading.other)
     refuse(table,
            fmt::format("the plate in the frames repeats itself after {:.4g} frames, so that the phases "
-                       "are wrong by half a frame from frame {} on",
+                       "drift by {:.2g} frames over the film",
                        reading.other->period,
-                       static_cast<std::int64_t>(std::llround(
-                           0.5 / std::abs(table.frames_per_cycle / reading.other->period - 1)))));
+                       std::abs(table.frames_per_cycle / reading.other->period - 1) *
+                           static_cast<double>(plate.size())));
   if (!reading.changes.empty()) {
     // The bed, which changes with the plate, cannot tell lost frames from the change.
     table.warning = fmt::format(

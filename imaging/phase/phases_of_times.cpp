@@ -204,11 +204,12 @@ void count_from_first(PhaseTable& table) {
 
 }  // namespace
 
-bool set_phases_of_times(PhaseTable& table, std::span<const double> given, int stated) {
+bool set_phases_of_times(PhaseTable& table, std::span<const double> given, int stated,
+                         std::optional<double> period) {
   const CountedTimes times = counted_times(given);
   const std::optional<int> whole = whole_frames_per_cycle(times.step, stated);
   if (!whole) return false;
-  const std::optional<double> free = drifting(times.known, *whole);
+  const std::optional<double> free = period ? period : drifting(times.known, *whole);
   const double per_cycle = free.value_or(*whole);
   table.frames_per_cycle = free ? phases_of_uneven_period(*free, *whole) : *whole;
   if (std::string warning = other_period_in_words(stated, per_cycle, table.frames_per_cycle);

@@ -2,6 +2,7 @@
 /// \file
 /// Phases of frames whose times are known in cycles of the drive.
 
+#include <optional>
 #include <span>
 
 #include "imaging/phase/phase_lock.hpp"
@@ -20,9 +21,13 @@ namespace twincell::imaging {
 /// nearer one has it (PhaseTable::between counts the others); FramePhase::cycles is the given time.
 ///
 /// Frame intervals in which more than one frame fits are missing frames; frames at the same instant are
-/// doubled. \param cycles [frames] cycles of the drive, not decreasing; NaN: the frame is out of lock \param
-/// frames_per_cycle N_k as stated; 0: one over the median step, rounded \returns false if N_k is 0 and the
-/// median step is 0 or below 1e-5 cycles \pre at least one time is finite
-bool set_phases_of_times(PhaseTable& table, std::span<const double> cycles, int frames_per_cycle);
+/// doubled.
+/// \param cycles [frames] cycles of the drive, not decreasing; NaN: the frame is out of lock
+/// \param frames_per_cycle N_k as stated; 0: one over the median step, rounded
+/// \param period P, if it is known not to be a whole number of frames
+/// \returns false if N_k is 0 and the median step is 0 or below 1e-5 cycles
+/// \pre at least one time is finite
+bool set_phases_of_times(PhaseTable& table, std::span<const double> cycles, int frames_per_cycle,
+                         std::optional<double> period = {});
 
 }  // namespace twincell::imaging

@@ -26,6 +26,20 @@ double cost(std::size_t frames, double scatter, double amplitude, std::int64_t s
          kCostPerSlip * static_cast<double>(slips);
 }
 
+/// Whether the period of the plate clearly differs from N frames, and the phases of N would misplace the
+/// plate. A bed at rest on a plate that moves by more than a bead seems to bounce if its phases are off by a
+/// tenth of a frame.
+bool drifts(const SineSlips& whole, const FreeSine& free, int frames_per_cycle) {
+  constexpr double kClearly = 7;         // standard errors; frames have jitter
+  constexpr double kMinMisplaced = 0.1;  // px, at either end of the film
+  const auto seen = static_cast<double>(whole.seen), frames = static_cast<double>(whole.ticks.size());
+  const double radians = kTurn * std::abs(1 - frames_per_cycle / free.period) * frames / frames_per_cycle;
+  // Of the frequency of a sine in independent noise, times the length of the film.
+  const double error = std::sqrt(24 / seen) * free.scatter / free.amplitude;
+  return radians > kClearly * error && 0.5 * radians * free.amplitude > kMinMisplaced &&
+         free.scatter < whole.scatter;
+}
+
 std::int64_t number_of_slips(const SineSlips& fit) {
   std::int64_t slips = 0;
   for (std::size_t f = 1; f < fit.ticks.size(); ++f) slips += fit.ticks[f] == fit.ticks[f - 1] + 1 ? 0 : 1;
@@ -34,6 +48,9 @@ std::int64_t number_of_slips(const SineSlips& fit) {
 
 double cost(const SineSlips& fit) {
   return cost(fit.ticks.size(), fit.scatter, fit.amplitude, number_of_slips(fit));
+}
+double cost(const FreeSine& fit, std::span<const double> plate) {
+  return cost(plate.size(), fit.scatter, fit.amplitude, 0);
 }
 
 /// How the motion of a plate that follows no single sine differs between begin and end, each of which does
@@ -90,13 +107,12 @@ PlateReading read(std::span<const double> plate, int frames_per_cycle, const Fre
   }
   std::optional<SineSlips> fit = fit_sine_with_slips(plate, frames_per_cycle);
   const bool fits = fit && moves(fit->amplitude, fit->scatter);
-  if (!fits || fit->dropped + fit->doubled > 0) {
-    const std::optional<FreeSine> free = free_sine();
-    if (free && moves(free->amplitude, free->scatter)) {
-      const double drift = std::abs(frames_per_cycle / free->period - 1) * static_cast<double>(plate.size());
-      if ((!fits || cost(plate.size(), free->scatter, free->amplitude, 0) < cost(*fit)) && drift > kMaxDrift)
-        out.other = free;
-    }
+  if (const std::optional<FreeSine> free = free_sine(); free && moves(free->amplitude, free->scatter)) {
+    const double drift = std::abs(frames_per_cycle / free->period - 1) * static_cast<double>(plate.size());
+    if (fits && fit->dropped + fit->doubled == 0
+            ? drifts(*fit, *free, frames_per_cycle)
+            : drift > kMaxDrift && (!fits || cost(*free, plate) < cost(*fit)))
+      out.other = free;
   }
   if (fits) {
     const std::vector<double> misses = misses_of(plate, fit->amplitude, fit->scatter,
@@ -135,7 +151,7 @@ std::optional<PhaseTable> phases_of_uneven(std::span<const double> plate, const 
   for (const FrameStretch& s : out_of_lock)
     for (std::size_t f = s.first; f <= s.last; ++f) cycles[f] = kNaN;
   PhaseTable table{.method = PhaseMethod::found};
-  if (frames_in(out_of_lock) == plate.size() || !set_phases_of_times(table, cycles, stated))
+  if (frames_in(out_of_lock) == plate.size() || !set_phases_of_times(table, cycles, stated, sine->period))
     return std::nullopt;
   table.jitter.reset();  // that of the sine's own times
   table.checked_by = "the plate";

@@ -29,8 +29,10 @@ struct PlateReading {
 
 /// Reads the plate. It can tell if it is seen in 60 % of the frames, moves by at least 1 px, and follows a
 /// sine to 15 % of its amplitude. Another period is better if it costs less than the missing and doubled
-/// frames that N needs, and if it differs from N by more than half a frame over the stack. The plate is off
-/// its sine in a frame if it misses it by more than five times the scatter, 10 % of the amplitude and 1 px.
+/// frames that N needs, and if it differs from N by more than half a frame over the stack; or, where N needs
+/// none, if it differs from N by seven standard errors and the phases of N would misplace the plate by more
+/// than 0.1 px at the ends of the stack. The plate is off its sine in a frame if it misses it by more than
+/// five times the scatter, 10 % of the amplitude and 1 px.
 /// \param plate_px [frames] height of the plate, px, NaN where not seen
 PlateReading read_plate(std::span<const double> plate_px, int frames_per_cycle);
 

@@ -225,11 +225,17 @@ std::optional<FreeSine> fit_free_sine(std::span<const double> all) {
   constexpr double kRefinement = 30;  // ratio of the two steps of omega
   const double found = best.omega;
   search(found - step, found + step, step / kRefinement);
-  for (double known = step / kRefinement; z.size() < all.size(); known /= 2) {
+  double known = step / kRefinement;
+  for (; z.size() < all.size(); known /= 2) {
     z = all.first(std::min(all.size(), 2 * z.size()));
     least = std::numeric_limits<double>::infinity();
     const double middle = best.omega;
     search(middle - known, middle + known, known / 4);
+  }
+  // Between the steps: down to a hundredth of one.
+  for (double width = known; width > known / 100; width /= 2) {
+    const double middle = best.omega;
+    search(middle - width / 2, middle + 0.51 * width, width / 2);
   }
   if (!(best.omega > 0)) return std::nullopt;
   return FreeSine{kTurn / best.omega, best.amplitude(), robust_spread(deviations(z, ticks, best)), best.c[0],

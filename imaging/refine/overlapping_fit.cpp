@@ -11,6 +11,7 @@
 #include "core/cancellation.hpp"
 #include "core/median.hpp"
 #include "imaging/refine/disc_measures.hpp"
+#include "imaging/refine/residual_correlation.hpp"
 #include "imaging/refine/sparse_gauss_newton.hpp"
 
 namespace twincell::imaging {
@@ -241,15 +242,18 @@ class Layers {
 
   /// The fitted discs with their uncertainties. \pre a sweep since the last change
   [[nodiscard]] std::vector<Detection> detections() const {
+    constexpr double kWhole = 0.95;  // of the rim
+    std::vector<RimHarmonics> rims;
+    for (const Sums& s : sums_)
+      if (s.seen > kWhole) rims.push_back(s.rim), rims.back().excess = s.excess();
+    const double rho = residual_correlation(rims);
     std::vector<Detection> found;
     for (std::size_t k = 0; k < discs_.size(); ++k) {
       const Sums& s = sums_[k];
       Detection b;
       b.x = discs_[k].x, b.y = discs_[k].y, b.radius = discs_[k].radius, b.darkness = discs_[k].darkness;
-      // Where the model does not describe the picture, the residual is more than the noise.
-      const double excess = std::max(1.0, s.pixels > 5 ? s.weighted / (s.pixels - 4) : 1.0);
-      const Normal covariance = s.normal.inverse() * excess;
-      b.sigma_x = std::sqrt(covariance(kX, kX)), b.sigma_y = std::sqrt(covariance(kY, kY));
+      const Normal covariance = s.normal.inverse() * s.excess();
+      b.sigma_x = std::sqrt(rho * covariance(kX, kX)), b.sigma_y = std::sqrt(rho * covariance(kY, kY));
       b.sigma_radius = std::sqrt(covariance(kR, kR));
       b.residual = s.shown > 0 ? std::sqrt(s.squares / s.shown) : 0;
       b.ring_share = s.seen;
@@ -269,6 +273,12 @@ class Layers {
     double shown = 0, squares = 0;    // by what the others transmit
     double own = 0, own_squares = 0;  // the picture less the other discs
     double seen = 0;                  // part of the rim that is not hidden
+    RimHarmonics rim;
+
+    /// Where the model does not describe the picture, the residual is more than the noise.
+    [[nodiscard]] double excess() const {
+      return std::max(1.0, pixels > kFitted + 1 ? weighted / (pixels - kFitted) : 1.0);
+    }
   };
 
   [[nodiscard]] double mean_radius() const { return found_radius_ > 0 ? found_radius_ : radius_; }
@@ -369,6 +379,9 @@ class Layers {
       s.right += weight * residual * j;
       const double by_blur = -by_edge * (r - disc.radius) / blur;
       s.blur_right += weight * by_blur * residual, s.blur_normal += weight * by_blur * by_blur;
+      if (r > 0)
+        s.rim.add((x - disc.x) / r, (y - disc.y) / r, by_edge, 1 / variance,
+                  std::clamp(residual, -huber_, huber_));
       ++s.pixels;
       s.weighted += weight * residual * residual;
       const double shown = others * others, own = d - (1 - others) / unit_;

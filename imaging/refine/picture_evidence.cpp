@@ -17,7 +17,7 @@ namespace {
 constexpr double kOutside = 2.5;             // px beyond the rim that belong to a disc
 constexpr float kRim = 2;                    // px inside the rim that belong to it
 constexpr double kPerPixel = 2;              // levels of the profile
-constexpr double kDiscCost = 2.5;            // ln N each: half of x, y, R, a, o
+constexpr double kDiscCost = 2.5;            // ln n_b each: half of x, y, R, a, o
 constexpr double kStep = 0.5, kMinStep = 2;  // of R; px
 constexpr int kDirections = 8;
 constexpr int kRounds = 2;  // of learning the profile, then the level of each disc
@@ -299,14 +299,20 @@ class Explanation {
       for (std::size_t k = 0; k < s.count; ++k) s.used[k] = sums[s.first + k] > 0;
   }
 
+  /// Cost of the place of a disc: n discs have N^n/n! places among N pixels.
+  [[nodiscard]] double place_cost() const {
+    return 1 + std::log(static_cast<double>(grey_.total()) / static_cast<double>(discs_.size()));
+  }
+
   PictureEvidence gains() {
     PictureEvidence result;
     const double cost = std::log(static_cast<double>(grey_.total()));
-    result.of_disc.assign(discs_.size(), -kDiscCost * cost);
+    result.of_disc.assign(discs_.size(), -place_cost());
     result.misfit.assign(discs_.size(), 0);
-    std::vector<double> pixels(discs_.size());
+    std::vector<double> pixels(discs_.size()), owned(discs_.size());
     over_owned([&](int x, int y, std::size_t b, std::size_t k) {
       const Size& s = sizes_[size_of_[b]];
+      ++owned[b];
       if (!s.used[k]) return;
       const double e1 = residual(x, y);
       result.of_disc[b] += pixel_gain(e1, s.scale[k], without(x, y, s.steps), noise_);
@@ -314,8 +320,10 @@ class Explanation {
       result.misfit[b] += std::log(1 + e1 * e1 / (s.scale[k] * s.scale[k]));
       ++pixels[b];
     });
-    for (std::size_t b = 0; b < discs_.size(); ++b)
+    for (std::size_t b = 0; b < discs_.size(); ++b) {
       if (pixels[b] > 0) result.misfit[b] /= pixels[b];
+      result.of_disc[b] -= kDiscCost * std::log(std::max(1.0, owned[b]));
+    }
     for (const double of : result.of_disc) result.total += of;
     for (const Size& s : sizes_)
       result.total -= 0.5 * cost * static_cast<double>(std::count(s.used.begin(), s.used.end(), true));

@@ -18,8 +18,11 @@
 ///
 /// Residuals are distributed as Cauchy's, p(e) = s/(pi (s^2 + e^2)), because no model of a real picture is
 /// exact. The gain of a pixel is ln p(e_1) - ln p(e_0); it is lost where a rim is predicted and none is seen.
-/// Each disc costs (5/2) ln N (x, y, R, a, o) and each size (n/2) ln N for its n profile levels, N the number
-/// of pixels (Schwarz, Ann. Stat. 6, 461 (1978)).
+/// Each disc costs (5/2) ln n_b (x, y, R, a, o), n_b the number of its pixels, and 1 + ln(N/n) for the choice
+/// of its place, n the number of discs and N that of all pixels. Each size costs (m/2) ln N for its m profile
+/// levels (Schwarz, Ann. Stat. 6, 461 (1978): a parameter costs half the logarithm of the number of values
+/// that it is estimated from). With (5/2) ln N a disc, the small beads of a crystal cost more than they
+/// explain, and its vacancies were taken for beads.
 
 #include <array>
 #include <cstddef>

@@ -10,6 +10,7 @@
 #include "core/cancellation.hpp"
 #include "core/median.hpp"
 #include "imaging/refine/disc_measures.hpp"
+#include "imaging/refine/residual_correlation.hpp"
 #include "imaging/refine/sparse_gauss_newton.hpp"
 
 namespace twincell::imaging {
@@ -231,11 +232,12 @@ class ProfileFit {
   }
 
   Refined result(int sweeps) {
+    const double rho = correlation();
     for (std::size_t k = 0; k < beads_.size(); ++k) {
       Detection& b = beads_[k];
       const Normal& c = covariance_[k];
-      b.sigma_x = std::sqrt(c(0, 0));
-      b.sigma_y = std::sqrt(c(1, 1));
+      b.sigma_x = std::sqrt(rho * c(0, 0));
+      b.sigma_y = std::sqrt(rho * c(1, 1));
       b.sigma_radius = std::sqrt(c(2, 2));
       measure_disc(image_, b);
     }
@@ -366,6 +368,32 @@ class ProfileFit {
     b.darkness = std::clamp(b.darkness + step[3], 0.0, 2.0);
     add(b, 1);
     return std::hypot(dx, dy);
+  }
+
+  /// By what the correlation of the residuals enlarges the variances of the centres. Only discs that lie in
+  /// the frame count.
+  [[nodiscard]] double correlation() const {
+    std::vector<RimHarmonics> rims;
+    for (const Detection& b : beads_) {
+      const double reach = b.radius + kReach;
+      if (b.x < reach || b.y < reach || b.x > image_.darkness.cols - 1 - reach ||
+          b.y > image_.darkness.rows - 1 - reach)
+        continue;
+      RimHarmonics rim;
+      double squares = 0, pixels = 0;
+      over(b, [&](int x, int y, double r) {
+        if (r == 0) return;
+        const double scale = radius_ / b.radius, t = static_cast<double>(model_(y, x));
+        const double slope = b.darkness * level_at(shared_, r * scale).slope * scale;
+        const double left = std::clamp(static_cast<double>(image_.darkness(y, x)) - t, -huber_, huber_);
+        const double w = 1 / (noise_.dark + noise_.light * std::clamp(1 - t, 0.0, 1.0));
+        rim.add((x - b.x) / r, (y - b.y) / r, slope, w, left);
+        squares += w * left * left, ++pixels;
+      });
+      rim.excess = std::max(1.0, squares / std::max(1.0, pixels - kFitted));
+      rims.push_back(rim);
+    }
+    return residual_correlation(rims);
   }
 
   /// Fraction of the variance of its own pixels that a disc explains, with neighbours subtracted.

@@ -9,6 +9,7 @@
 
 #include "core/median.hpp"
 #include "imaging/refine/disc_measures.hpp"
+#include "imaging/refine/residual_correlation.hpp"
 #include "imaging/refine/shared_blur.hpp"
 
 namespace twincell::imaging {
@@ -230,10 +231,20 @@ Refined RingFit::result() {
   std::vector<Detection>& beads = frame_.beads;
   unsettled_.resize(beads.size());
   const std::vector<Normal> covariance = covariances();
+  const double rho = beads.empty() ? 1 : correlation();
   for (std::size_t k = 0; k < beads.size(); ++k)
-    measure(beads[k], sums_[k], covariance[k], unsettled_[k] / std::numbers::sqrt2);
+    measure(beads[k], sums_[k], covariance[k], rho, unsettled_[k] / std::numbers::sqrt2);
   return {std::move(beads), std::move(frame_.dropped), std::sqrt(frame_.blur.variance), frame_.blur.path,
           sweeps_};
+}
+
+// By what the correlation of the residuals enlarges the variances of the centres.
+double RingFit::correlation() const {
+  std::vector<double> excesses;
+  for (const RingSums& s : sums_) excesses.push_back(excess(s));
+  RingArgs args = frame_.ring_args();
+  if (sweeps_ == 1) args.row_step = kFirstRows;
+  return residual_correlation(rim_harmonics(args, frame_.discs(), excesses));
 }
 
 // Covariance of each disc's x, y, R, a due to noise, including the uncertainty of its neighbours. It uses the
@@ -256,13 +267,14 @@ std::vector<Normal> RingFit::covariances() const {
   return all;
 }
 
-// Sets uncertainty, score, interior and moments of a bead. `unsettled` is the error of either coordinate from
-// incomplete convergence, px.
-void RingFit::measure(Detection& b, const RingSums& s, const Normal& by_noise, double unsettled) const {
+// Sets uncertainty, score, interior and moments of a bead. `rho` is residual_correlation(); `unsettled` is
+// the error of either coordinate from incomplete convergence, px.
+void RingFit::measure(Detection& b, const RingSums& s, const Normal& by_noise, double rho,
+                      double unsettled) const {
   const double n = s.pixels;
   const Normal covariance = excess(s) * by_noise;
-  b.sigma_x = std::sqrt(covariance(kX, kX) + unsettled * unsettled);
-  b.sigma_y = std::sqrt(covariance(kY, kY) + unsettled * unsettled);
+  b.sigma_x = std::sqrt(rho * covariance(kX, kX) + unsettled * unsettled);
+  b.sigma_y = std::sqrt(rho * covariance(kY, kY) + unsettled * unsettled);
   b.sigma_radius = std::sqrt(covariance(kR, kR));
   b.residual = n > 0 ? std::sqrt(s.residual_squares / n) : std::numeric_limits<double>::infinity();
   b.score = explained_share(s);

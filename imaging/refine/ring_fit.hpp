@@ -67,8 +67,9 @@ class RingFit {
   SweepResult step(const RingArgs& args, BlurFit fit);
   double move(Detection& b, const Step& step) const;
   void summarise(std::vector<double> far, std::vector<double> sigma, SweepResult& moved) const;
+  [[nodiscard]] double correlation() const;
   [[nodiscard]] std::vector<Normal> covariances() const;
-  void measure(Detection& b, const RingSums& s, const Normal& by_noise, double unsettled) const;
+  void measure(Detection& b, const RingSums& s, const Normal& by_noise, double rho, double unsettled) const;
 
   // Relative addition to the diagonal; it is increased only while steps make the fit worse.
   static constexpr double kDamping = 0.002;

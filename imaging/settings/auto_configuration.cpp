@@ -308,6 +308,9 @@ class SettingsSearch {
   void propose_plain_discs() {
     constexpr double kShrink = 4;
     try_all(hypotheses_);
+    // The size of small discs that touch does not converge in a few sweeps: blur and radius look alike.
+    for (const Hypothesis& h : hypotheses_)
+      if (h.diameter_px == lattice_) candidates_.push_back({lattice_, h.bright, 0, {}, {}});
     if (given_.diameter_px > 0 || (best_ && best_->explained > 0)) return;
     cv::Mat small;  // in which discs of up to 320 px are found
     cv::resize(grey_, small, {}, 1 / kShrink, 1 / kShrink, cv::INTER_AREA);
@@ -359,8 +362,8 @@ class SettingsSearch {
     region_.neighbour_radius_px = kSmallestRadius;
     SettingsChoice small =
         confirmed(region_, given_, try_settings(region_, given_, small_profiles(grey_, given_), threads_));
-    const bool better = !small.tried.empty() || not_round(small) != nullptr || choice.refused.empty();
-    return better ? small : choice;
+    if (!small.tried.empty()) return explains_more(choice.refused, small.tried.front()) ? choice : small;
+    return not_round(small) != nullptr || choice.refused.empty() ? small : choice;
   }
 
   /// The choice with variants of its winner: its rims alone, two layers, further sizes.
@@ -380,7 +383,25 @@ class SettingsSearch {
     return with(choice, more);
   }
 
+  /// The lattice constant of a crystal that fills the frame, if the chosen discs cover less than 0.3 of it.
+  [[nodiscard]] double uncovered_lattice_px(const SettingsChoice& choice) const {
+    constexpr double kCovered = 0.3;
+    if (choice.tried.empty()) return 0;
+    const TriedSettings& chosen = choice.tried.front();
+    const double radius = 0.5 * chosen.settings.diameter_px,
+                 area = std::numbers::pi * radius * radius * static_cast<double>(chosen.beads);
+    return area < kCovered * static_cast<double>(grey_.total()) ? lattice_ : 0;
+  }
+
  private:
+  /// Whether round discs that were refused for their little evidence a disc have more of it in all: a few
+  /// gaps of a crystal are not the beads.
+  [[nodiscard]] static bool explains_more(const std::vector<TriedSettings>& refused,
+                                          const TriedSettings& than) {
+    return std::any_of(refused.begin(), refused.end(),
+                       [&](const TriedSettings& t) { return is_round(t) && t.evidence > than.evidence; });
+  }
+
   /// Whether the options leave the model of the discs open.
   [[nodiscard]] bool is_open() const {
     return given_.other_diameters_px.empty() && given_.refine.method == kExactRefiner.word;
@@ -432,7 +453,10 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   SettingsChoice choice = search.judge();
   if (given.diameter_px > 0 || model_of(given.refine) != DiscModel::plain) return choice;
   choice = search.or_small_discs(search.with_further_sizes(std::move(choice)));
-  return choice.tried.empty() ? choice : search.with_variants_of_winner(choice);
+  if (choice.tried.empty()) return choice;
+  choice = search.with_variants_of_winner(choice);
+  choice.uncovered_lattice_px = search.uncovered_lattice_px(choice);
+  return choice;
 }
 
 std::optional<FoundSettings> find_settings(const cv::Mat& picture, const LocatorOptions& given) {

@@ -23,6 +23,12 @@ std::vector<std::string> settings_doubts(const SettingsChoice& choice, const std
         fmt::format("other settings explain the picture nearly as well; compare the overlays of twincell "
                     "locate --overlay without options and with {}",
                     options_text(choice.tried[k].settings, refine)));
+  if (choice.uncovered_lattice_px > 0)
+    doubts.push_back(fmt::format(
+        "the picture repeats itself every {0:.1f} px, as a crystal of beads of this diameter does, but the "
+        "beads found cover little of it: compare the overlay of twincell locate --overlay with and without "
+        "--diameter {0:.1f} --dark or --bright",
+        choice.uncovered_lattice_px));
   if (std::any_of(choice.tried.begin(), choice.tried.end(), [&](const TriedSettings& t) {
         return !is_round(t) && t.evidence > choice.tried.front().evidence;
       }))

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -30,7 +31,7 @@ double bytes_of(const cv::Mat& frame) {
 /// The beads of all frames that are inside the cell, and the counts of excluded ones.
 struct Detections {
   DetectionStore frames;
-  std::size_t outside_cell = 0, wrong_radius = 0, paler = 0;
+  std::size_t outside_cell = 0, wrong_radius = 0, paler = 0, rejected = 0;
   std::optional<Aspect> aspect;
   bool cut_by_frame = false;  ///< at least one bead is cut by the frame
 };
@@ -71,6 +72,15 @@ class EvidenceCollectingSource : public FrameSource {
   LockEvidence evidence_;
   RepeatedFrames repeated_;
 };
+
+/// Whether a candidate that no disc explains lies where a bead would have room. Candidates in gaps have none.
+bool has_room(const Detection& candidate, const std::vector<Detection>& beads) {
+  constexpr double kRoom = 1.6;  // radii, between centres
+  return candidate.verdict == Verdict::unexplained &&
+         std::none_of(beads.begin(), beads.end(), [&](const Detection& b) {
+           return std::hypot(b.x - candidate.x, b.y - candidate.y) < kRoom * b.radius;
+         });
+}
 
 Detections detect(FramesAhead& frames, const CellDescription& cell, const TrackingOptions& options,
                   const cv::Size& picture, Progress& progress, StageTimes* times) {
@@ -113,6 +123,10 @@ Detections detect(FramesAhead& frames, const CellDescription& cell, const Tracki
           if (const double x = d.x + region.corner().x, y = d.y + region.corner().y;
               !region.cuts(x, y, d.radius) && in_cell({x, y}))
             ++all.paler;
+        for (const Detection& d : found.dropped)
+          if (const double x = d.x + region.corner().x, y = d.y + region.corner().y;
+              has_room(d, found.beads) && !region.cuts(x, y, d.radius) && in_cell({x, y}))
+            ++all.rejected;
         inside += beads.size();
         all.frames.append(beads);
       },
@@ -163,10 +177,23 @@ std::string TrackedStack::paler_doubt() const {
 std::vector<std::string> TrackedStack::doubts(const CellDescription& cell) const {
   std::vector<std::string> all;
   for (const std::string& doubt : settings_doubts) all.push_back(doubt + ".");
-  for (const std::string& doubt : {phases.warning, missing_beads(), empty_frames(), paler_doubt(),
-                                   surplus_tracks(), scale_doubt(cell), aspect_doubt(), still_discs()})
+  for (const std::string& doubt :
+       {phases.warning, missing_beads(), empty_frames(), paler_doubt(), rejected_doubt(), surplus_tracks(),
+        scale_doubt(cell), aspect_doubt(), still_discs()})
     if (!doubt.empty()) all.push_back(doubt + ".");
   return all;
+}
+
+std::string TrackedStack::rejected_doubt() const {
+  constexpr double kMinInFrame = 0.5;
+  const double in_frame =
+      static_cast<double>(rejected) / static_cast<double>(std::max<std::size_t>(1, frames.size()));
+  if (in_frame < kMinInFrame) return {};
+  return fmt::format(
+      "in {:.2g} places of a frame, in which a bead has room, a candidate was left out because no disc "
+      "explains "
+      "it: if they are beads, N_l, the results and a twin lack them (twincell locate --overlay)",
+      in_frame);
 }
 
 TrackedStack track_stack(FrameSource& stack, const CellDescription& cell, const TrackingOptions& given,
@@ -199,7 +226,7 @@ TrackedStack track_stack(FrameSource& stack, const CellDescription& cell, const 
   linking.count(static_cast<double>(linked.links.links));
   TrackedStack tracked{std::move(linked),     options.locator,       watched.size().width,
                        watched.size().height, detected.outside_cell, detected.wrong_radius,
-                       detected.paler};
+                       detected.paler,        detected.rejected};
   tracked.aspect = detected.aspect;
   tracked.settings_doubts = std::move(doubts);
   return tracked;

@@ -39,7 +39,8 @@ struct TrackedStack : LinkedDetections {
   std::size_t outside_cell = 0;  ///< detections excluded because they are outside the cell
   std::size_t wrong_radius = 0;  ///< candidates excluded as discs of another size
   std::size_t paler = 0;  ///< candidates in the cell excluded as discs of another darkness (paler_discs.hpp)
-  FrameRange range = {};  ///< numbers of the frames, which become the steps of the trajectory
+  std::size_t rejected = 0;        ///< candidates in the cell that no disc explains, where a bead has room
+  FrameRange range = {};           ///< numbers of the frames, which become the steps of the trajectory
   std::string spacing_doubt = {};  ///< of a table: beads overlap or are listed twice, a sentence
   std::vector<std::string> settings_doubts = {};  ///< settings_doubts.hpp, of the settings that were found
   bool has_errors = true;                         ///< the standard errors of the positions are known
@@ -49,6 +50,8 @@ struct TrackedStack : LinkedDetections {
   /// A sentence, without a full stop, if more paler discs than a fiftieth of the beads were left out, as
   /// tracers of another darkness may be. Empty otherwise.
   [[nodiscard]] std::string paler_doubt() const;
+  /// A sentence, without a full stop, if there is a rejected candidate in every other frame; else empty.
+  [[nodiscard]] std::string rejected_doubt() const;
   /// Aspect::doubt of the stack.
   [[nodiscard]] std::string aspect_doubt() const { return aspect ? aspect->doubt() : ""; }
   /// All doubts about the stack, phases, links and sizes, in sentences with their full stop.

@@ -67,13 +67,15 @@ TEST(PictureEvidence, OfAnExactModelIsItsClosedForm) {
         expected += std::log((s0 * s0 + least) / (s0 * kNoise)) - 0.5335;
       }
   const double discs = static_cast<double>(kCentres.size()), pixels = std::log(double(kSide) * kSide);
-  expected -= 2.5 * discs * pixels + 0.5 * 2 * (kRadius + kOutside) * pixels;
+  const double of_disc = std::log(std::numbers::pi * std::pow(kRadius + kOutside, 2));
+  expected -= discs * (2.5 * of_disc + 1 + pixels - std::log(discs));
+  expected -= 0.5 * 2 * (kRadius + kOutside) * pixels;
   const PictureEvidence found = picture_evidence(grey, discs_at(kCentres, kRadius), {kRadius});
   EXPECT_NEAR(found.total, expected, 0.01 * expected);
   for (const double of : found.of_disc) EXPECT_NEAR(of, found.total / discs, 0.1 * found.total / discs);
 }
 
-// A disc less is the share of a disc less; a disc where none is costs (5/2) ln N at least.
+// A disc less is the share of a disc less; a disc where none is costs its parameters and its place at least.
 TEST(PictureEvidence, FallsWithADiscLessAndWithADiscTooMany) {
   const cv::Mat1f grey = cones(kCentres);
   const PictureEvidence all = picture_evidence(grey, discs_at(kCentres, kRadius), {kRadius});
@@ -83,7 +85,8 @@ TEST(PictureEvidence, FallsWithADiscLessAndWithADiscTooMany) {
   std::vector<cv::Point2d> more = kCentres;
   more.emplace_back(100, 100);
   const PictureEvidence invented = picture_evidence(grey, discs_at(more, kRadius), {kRadius});
-  EXPECT_LT(invented.of_disc[4], -2.5 * std::log(double(kSide) * kSide));
+  EXPECT_LT(invented.of_disc[4], -2.5 * std::log(std::numbers::pi * std::pow(kRadius + kOutside, 2)) - 1 -
+                                     std::log(double(kSide) * kSide / 5));
   EXPECT_LT(invented.total, all.total + invented.of_disc[4] + 0.05 * all.total / 4);
   EXPECT_GT(invented.misfit[4], invented.misfit[0]);
 }

@@ -98,13 +98,14 @@ TEST_P(Votes, AreThoseOfTheDefinition) {
   double worst = 0;
   std::vector<cv::Point> tops;
   std::vector<std::int32_t> room;
-  constexpr float kLeast = 0.1F;
+  constexpr float kMinVotes = 0.1F;
   over_smoothed_votes(darkness, ignore, options, [&](int y, const VoteLines& lines) {
     ASSERT_EQ(y, rows++);
     for (int x = 0; x < expected.cols; ++x)
       worst = std::max(worst, std::abs(static_cast<double>(lines[2][x]) - expected(y, x)));
     if (y < 2) return;
-    for (const std::int32_t x : tops_of_votes(lines, static_cast<std::size_t>(expected.cols), kLeast, room))
+    for (const std::int32_t x :
+         tops_of_votes(lines, static_cast<std::size_t>(expected.cols), kMinVotes, room))
       tops.emplace_back(x, y - 1);
   });
   EXPECT_EQ(rows, expected.rows);
@@ -113,7 +114,7 @@ TEST_P(Votes, AreThoseOfTheDefinition) {
   std::vector<cv::Point> larger;
   for (int y = 1; y + 1 < expected.rows; ++y)
     for (int x = 1; x + 1 < expected.cols; ++x) {
-      bool top = expected(y, x) >= static_cast<double>(kLeast);
+      bool top = expected(y, x) >= static_cast<double>(kMinVotes);
       for (int j = -1; j <= 1; ++j)
         for (int i = -1; i <= 1; ++i)
           top = top && ((i == 0 && j == 0) || expected(y, x) > expected(y + j, x + i));
