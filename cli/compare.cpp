@@ -65,7 +65,7 @@ void run(const Common& common, const CompareOptions& o) {
   const twin::ComparingOptions options = configuration(o, common);
   require_sides(o);
   if (!o.trust_stated_drive) require_drive_of_film(o.experiments);
-  const twin::NotedComparison compared = compare_sides(common, options);
+  const analysis::Comparison compared = compare_sides(common, options);
   report_comparison(common, options, compared, o.output, nlohmann::json::object(), "");
 }
 

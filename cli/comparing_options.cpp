@@ -49,14 +49,14 @@ twin::ComparingOptions comparing_options(const ComparingFlags& flags, const Comm
   return options;
 }
 
-twin::NotedComparison compare_sides(const Common& common, const twin::ComparingOptions& options) {
-  twin::NotedComparison noted = twin::compare_runs(options, progress_bars(common));
-  for (const std::string& sentence : noted.notes) note(common, sentence);
-  return noted;
+analysis::Comparison compare_sides(const Common& common, const twin::ComparingOptions& options) {
+  analysis::Comparison comparison = twin::compare_runs(options, progress_bars(common));
+  for (const std::string& sentence : comparison.notes) note(common, sentence);
+  return comparison;
 }
 
 void report_comparison(const Common& common, const twin::ComparingOptions& options,
-                       const twin::NotedComparison& noted, const std::filesystem::path& folder,
+                       const analysis::Comparison& comparison, const std::filesystem::path& folder,
                        nlohmann::json result, const std::string& result_text) {
   Provenance provenance = common.provenance();
   for (const auto* files : {&options.experiments, &options.simulations, &options.sweeps})
@@ -64,17 +64,16 @@ void report_comparison(const Common& common, const twin::ComparingOptions& optio
   const std::string origin = provenance.to_json();
   {
     ProgressBar progress(common, "figures");
-    analysis::write_report(folder, noted.comparison, origin, progress);
+    analysis::write_report(folder, comparison, origin, progress);
   }
   const std::string report = (folder / "report.html").string();
-  result.update(nlohmann::json::parse(analysis::comparison_json(noted.comparison)));
-  result["notes"] = noted.notes;
+  result.update(nlohmann::json::parse(analysis::comparison_json(comparison)));
   result["report"] = report;
   result["provenance"] = nlohmann::json::parse(origin);
-  print_result(common, result,
-               (common.verbose ? analysis::comparison_text(noted.comparison)
-                               : analysis::comparison_summary(noted.comparison)) +
-                   result_text + "report: " + report + "\n");
+  print_result(
+      common, result,
+      (common.verbose ? analysis::comparison_text(comparison) : analysis::comparison_summary(comparison)) +
+          result_text + "report: " + report + "\n");
 }
 
 }  // namespace twincell::cli

@@ -36,12 +36,12 @@ void add_comparing_flags(CLI::App& verb, ComparingFlags& flags);
 twin::ComparingOptions comparing_options(const ComparingFlags& flags, const Common& common);
 
 /// Compares the runs and prints the notes. \throws as compare_runs
-twin::NotedComparison compare_sides(const Common& common, const twin::ComparingOptions& options);
+analysis::Comparison compare_sides(const Common& common, const twin::ComparingOptions& options);
 
 /// Writes the report of a comparison into `folder` and prints the result. \param result, result_text results
 /// of the verb itself, printed after those of the comparison, as JSON and as text
 void report_comparison(const Common& common, const twin::ComparingOptions& options,
-                       const twin::NotedComparison& noted, const std::filesystem::path& folder,
+                       const analysis::Comparison& comparison, const std::filesystem::path& folder,
                        nlohmann::json result, const std::string& result_text);
 
 }  // namespace twincell::cli

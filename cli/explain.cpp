@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "cli/output.hpp"
+#include "cli/scene_notes.hpp"
 #include "cli/verb.hpp"
 #include "sim/accuracy/plan_json.hpp"
 #include "sim/accuracy/step_error.hpp"
@@ -92,6 +93,7 @@ std::string as_text(const sim::Plan& plan, const sim::Scene& scene, const sim::C
 void run(const ExplainOptions& o, const Common& common) {
   const sim::Scene scene = sim::read_scene(o.scene, with_seed(o.assignments, common));
   for (const sim::VoidKey& key : scene.void_keys) note(common, key.text());
+  note_units(common, scene);
   ProgressBar bar(common, "placing beads");
   const sim::Cost cost = sim::measure_cost(scene, kMeasuredSeconds, common.threads, bar);
   sim::Plan plan = cost.plan;

@@ -9,6 +9,7 @@
 
 #include "analysis/observable/observable.hpp"
 #include "cli/output.hpp"
+#include "cli/scene_notes.hpp"
 #include "cli/stack_info.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
@@ -42,6 +43,7 @@ void export_scene(const ExportOptions& o, const Common& common) {
   std::vector<std::string> assignments = with_seed(o.assignments, common);
   sim::Scene scene = sim::read_scene(o.input, assignments);
   protect_named_inputs(common, scene.named_files());
+  note_units(common, scene);
   std::string otherwise;
   if (!scene.integrator_stated) {
     const double own = scene.steps_per_contact;

@@ -30,23 +30,36 @@ struct ImportOptions {
   std::string file, output, format;
   std::vector<double> origin;
   std::vector<std::string> columns;
-  const CLI::Option* sigma = nullptr;  ///< of `foreign`
+  const CLI::Option *sigma = nullptr, *gravity = nullptr;  ///< of `foreign`
   ForeignOptions foreign;
 };
 
-/// Refuses a file in millimetres, for example, without the diameter of a bead in that unit.
-void require_sigma(const ImportOptions& o, const ForeignTrajectory& source) {
+/// Refuses a file in millimetres, for example, without the diameter of a bead and gravity in its units. Notes
+/// that gravity is 1 if a diameter is given.
+void require_scale(const ImportOptions& o, const ForeignTrajectory& source, const Common& common) {
   const std::string unit = source.length_unit();
   std::string word = unit;
   std::transform(word.begin(), word.end(), word.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   constexpr std::array<std::string_view, 7> kOfNoScale = {"", "sigma", "d", "lj", "pixel", "pixels", "px"};
-  if (o.sigma->count() > 0 || std::find(kOfNoScale.begin(), kOfNoScale.end(), word) != kOfNoScale.end())
-    return;
-  throw ConfigError(
-      {o.file, 0, 0, "--sigma"},
-      fmt::format("is missing: the lengths of the file are in {0}, so the bead diameter in {0} is needed.",
-                  unit.substr(0, 40)));
+  const bool has_unit = std::find(kOfNoScale.begin(), kOfNoScale.end(), word) == kOfNoScale.end();
+  if (has_unit && o.sigma->count() == 0)
+    throw ConfigError(
+        {o.file, 0, 0, "--sigma"},
+        fmt::format("is missing: the lengths of the file are in {0}, so the bead diameter in {0} is needed.",
+                    unit.substr(0, 40)));
+  if (o.gravity->count() > 0) return;
+  if (has_unit)
+    throw ConfigError(
+        {o.file, 0, 0, "--gravity"},
+        fmt::format(
+            "is missing: the lengths of the file are in {0}, so gravity in {0} and the file's unit of "
+            "time is needed, such as 9810 for mm and s.",
+            unit.substr(0, 40)));
+  if (o.foreign.sigma != 1)
+    note(common,
+         "gravity is taken as 1 in the units of length and time of the file; --gravity gives another, "
+         "such as 9810 for mm and s.");
 }
 
 /// Says which numbers the beads have now; empty if they keep those of the file.
@@ -113,7 +126,7 @@ void run(ImportOptions& o, const Common& common) {
   set_foreign_options(o, format);
   ProgressBar reading(common, "reading");
   const ForeignTrajectory source(o.file, format, o.foreign, reading);
-  require_sigma(o, source);
+  require_scale(o, source, common);
   TrajectoryInfo info = source.info();
   Provenance provenance = common.provenance();
   provenance.inputs.emplace_back(o.file);
@@ -197,7 +210,10 @@ void add_unit_options(CLI::App& verb, ImportOptions& o) {
               "Bead diameter in the unit of the file, the unit of length of the trajectory; required if "
               "the file states a unit such as mm")
           ->capture_default_str();
-  verb.add_option("--gravity", l.gravity, "Acceleration of gravity g")->capture_default_str();
+  o.gravity = verb.add_option("--gravity", l.gravity,
+                              "Acceleration of gravity g in the units of the file; required if the file "
+                              "states a unit such as mm")
+                  ->capture_default_str();
 }
 
 void add_cell_options(CLI::App& verb, ImportOptions& o) {

@@ -33,10 +33,14 @@ void WatchedImport::watch_steps(const Frame& frame) {
     steps.push_back(step);
     beads.push_back(i);
     if (i >= frame.velocity.size() || i >= before_.velocity.size()) continue;
-    const double path = 0.5 * time * (frame.velocity[i] + before_.velocity[i]).norm();
-    if (!std::isfinite(path)) continue;
+    const Vec3 move = frame.position[i] - before_.position[i],
+               path = 0.5 * time * (frame.velocity[i] + before_.velocity[i]);
+    if (!path.allFinite()) continue;
     moved_ += step * step;
-    by_velocity_ += path * path;
+    by_velocity_ += path.squaredNorm();
+    moves_.noalias() += move * move.transpose();
+    paths_.noalias() += path * path.transpose();
+    both_.noalias() += move * path.transpose();
   }
   if (steps.empty()) return;
   const double typical = upper_median(steps);
@@ -66,6 +70,30 @@ void WatchedImport::append(const Frame& frame) {
   writer_.append(frame);
 }
 
+std::string WatchedImport::turned_velocities() const {
+  constexpr double kClearly = 0.7;  // correlation of moves and velocities
+  const auto correlation = [&](int move, int path) {
+    const double size = std::sqrt(moves_(move, move) * paths_(path, path));
+    return size > 0 ? both_(move, path) / size : 0.0;
+  };
+  for (const int axis : {0, 1, 2})
+    if (correlation(axis, axis) < -kClearly)
+      return fmt::format(
+          "along {} the beads move against their velocities: the velocities have another sign than the "
+          "positions.",
+          "xyz"[axis]);
+  for (const int axis : {0, 1, 2})
+    for (const int other : {0, 1, 2})
+      if (other < axis && std::abs(correlation(axis, other)) > kClearly &&
+          std::abs(correlation(other, axis)) > kClearly && correlation(axis, axis) < kClearly &&
+          correlation(other, other) < kClearly)
+        return fmt::format(
+            "the beads move along {0} as their velocities along {1} say: {0} and {1} of the "
+            "velocities are exchanged.",
+            "xyz"[other], "xyz"[axis]);
+  return {};
+}
+
 std::vector<std::string> WatchedImport::doubts() const {
   std::vector<std::string> doubts;
   constexpr double kMaxShareBelow = 0.002;
@@ -84,6 +112,7 @@ std::vector<std::string> WatchedImport::doubts() const {
         "from frame to frame the beads move {:.3g} times as far as their velocities say: the unit of the "
         "velocities, or the time between frames (--timestep), is wrong.",
         ratio));
+  if (const std::string turned = turned_velocities(); !turned.empty()) doubts.push_back(turned);
   if (doubled_ > 0)
     doubts.push_back(
         fmt::format("{}, the first in the frame of step {}, {} closer than {:g} diameters to another bead: "

@@ -97,20 +97,25 @@ twin::TwinOptions options_of(const MatchOptions& o, const Common& common, const 
   return options;
 }
 
+/// What is doubtful about the twin of a stack, in sentences.
+std::vector<std::string> notes_of(const twin::Twin& twin, const std::filesystem::path& stack) {
+  std::vector<std::string> notes;
+  for (const std::string& doubt : twin.doubts) notes.push_back(fmt::format("{}: {}", stack.string(), doubt));
+  if (twin.records_transient())
+    notes.push_back(fmt::format(
+        "{} begins in mid-motion: the beads of its first packing lie {:.2g} sigma above where they settle, "
+        "on average. The twin starts at rest, so its first cycles differ; --set time.discard=8 leaves out "
+        "eight of them.",
+        stack.string(), twin.fall));
+  return notes;
+}
+
 /// Makes the twin of one stack in `folder`, and notes what is doubtful about it.
 twin::Twin make_noted_twin(const Common& common, const twin::TwinOptions& options,
                            const std::filesystem::path& folder) {
   note_cell(common, imaging::read_cell(options.cell_file()), options.cell_file());
   twin::Twin twin = twin::make_twin(options, folder, provenance_of(common, options), progress_bars(common));
-  for (const std::string& doubt : twin.doubts)
-    note(common, fmt::format("{}: {}", options.stack.string(), doubt));
-  if (twin.records_transient())
-    note(common,
-         fmt::format(
-             "{} begins in mid-motion: the beads of its first packing lie {:.2g} sigma above where they "
-             "settle, on average. The twin starts at rest, so its first cycles differ; --set "
-             "time.discard=8 leaves out eight of them.",
-             options.stack.string(), twin.fall));
+  for (const std::string& sentence : notes_of(twin, options.stack)) note(common, sentence);
   return twin;
 }
 
@@ -179,7 +184,11 @@ void run(const Common& common, const MatchOptions& o) {
   std::string text;
   for (const twin::Twin& twin : twins) text += as_text(twin);
   const twin::ComparingOptions options = comparing(o, common, twins);
-  const twin::NotedComparison compared = compare_sides(common, options);
+  analysis::Comparison compared = compare_sides(common, options);
+  std::vector<std::string> notes;
+  for (std::size_t i = 0; i < twins.size(); ++i)
+    for (std::string& note : notes_of(twins[i], pairs.stacks[i])) notes.push_back(std::move(note));
+  compared.notes.insert(compared.notes.begin(), notes.begin(), notes.end());
   report_comparison(common, options, compared, std::filesystem::path(o.output) / "report", as_json(twins),
                     text);
 }

@@ -13,6 +13,7 @@
 #include "cli/output.hpp"
 #include "cli/plan_text.hpp"
 #include "cli/results_summary.hpp"
+#include "cli/scene_notes.hpp"
 #include "cli/verb.hpp"
 #include "core/json_text.hpp"
 #include "core/plural.hpp"
@@ -48,6 +49,7 @@ Run run_once(const MeasureOptions& options, const std::vector<std::string>& assi
   sim::Scene scene = sim::read_scene(options.scene, assignments);
   protect_named_inputs(common, scene.named_files());
   sweep::require_one_drive(scene);
+  note_units(common, scene);
   ProgressBar placing(common, "placing beads");
   sim::RunState state = sim::placed(scene, placing);
   json provenance = json::parse(scene_provenance(common, scene, state.beads, {options.scene}));

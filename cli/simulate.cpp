@@ -14,6 +14,7 @@
 #include "cli/output.hpp"
 #include "cli/plan_text.hpp"
 #include "cli/profile.hpp"
+#include "cli/scene_notes.hpp"
 #include "cli/verb.hpp"
 #include "core/cancellation.hpp"
 #include "core/error.hpp"
@@ -248,17 +249,6 @@ void run_into(H5mdWriter& writer, sim::Simulation& run, Progress& progress, sim:
   folder->gather(writer, [&] { writer.finish(); });
 }
 
-/// Notes on numbers of a scene with a scale that most likely have a wrong unit.
-void note_doubts(const sim::Scene& scene, const Common& common) {
-  if (!scene.scale.sigma_m || !(scene.g() > 0)) return;
-  if (scene.scale.gravity_m_s2 && scene.g() != 1)
-    note(common,
-         fmt::format("cell.gravity = {:g} is in units of scale.gravity_m_s2: gravity is {:.4g} m/s^2.",
-                     scene.g(), scene.g() * *scene.scale.gravity_m_s2));
-  for (const std::string& doubt : implausible_numbers(shaken_cell(scene.scale, scene.drive)))
-    note(common, doubt);
-}
-
 sim::Scene read_scene(const SimulateOptions& options, const Common& common) {
   std::vector<std::string> assignments = with_seed(options.assignments, common);
   if (options.relax) assignments.emplace_back("start.relax=true");
@@ -269,7 +259,7 @@ sim::Scene read_scene(const SimulateOptions& options, const Common& common) {
     note(common, fmt::format("[until] applies only to `measure` and `sweep`, which analyse during the run; "
                              "`simulate` runs all {} cycles.",
                              scene.cycles));
-  note_doubts(scene, common);
+  note_units(common, scene);
   return scene;
 }
 
@@ -379,7 +369,7 @@ void add_simulate(CLI::App& program, Common& common) {
   verb.add_option("scene", options->scene, "Scene file (TOML, docs/scene.md)")->required();
   writes(common, verb,
          verb.add_option("-o,--output", options->output, "Trajectory file to write (H5MD)")->required(),
-         Product::trajectory());
+         Product::trajectory("simulation"));
   verb.add_option("--set", options->assignments,
                   "Set a key of the scene, as section.key=value; overrides the file; may be repeated")
       ->take_all();

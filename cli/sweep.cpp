@@ -17,6 +17,7 @@
 #include "cli/mpi_farm.hpp"
 #include "cli/output.hpp"
 #include "cli/profile.hpp"
+#include "cli/scene_notes.hpp"
 #include "cli/sweep_watch.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
@@ -25,6 +26,7 @@
 #include "core/output_rules.hpp"
 #include "core/plural.hpp"
 #include "sim/run/make_solver.hpp"
+#include "sim/scene/read_scene.hpp"
 #include "sweep/collect.hpp"
 #include "sweep/farm.hpp"
 #include "sweep/results_figure.hpp"
@@ -61,6 +63,13 @@ sweep::Plan plan_of(const SweepOptions& options, const Common& common) {
   if (common.seed) plan.seed = *common.seed;
   for (const std::string& doubt : plan.doubts) note(common, doubt);
   return plan;
+}
+
+/// Notes doubtful units of the first point; the others have the same scale.
+void note_units_of(const sweep::Schedule& schedule, const sweep::Plan& plan, const Common& common) {
+  for (const sweep::Curve& curve : schedule.curves())
+    for (const sweep::Point& point : curve.points)
+      return note_units(common, sim::read_scene_text(point.scene, plan.scene_name, {}, plan.scene_folder));
 }
 
 /// Opens the folder of an existing sweep. \throws InputError if there is none
@@ -125,6 +134,7 @@ void run_plan(const SweepOptions& options, const Common& common) {
   const sweep::Store store(folder_of(options));
   const sweep::Schedule schedule(plan, store);
   require_memory_together(schedule, common.n_threads(), "--threads");
+  note_units_of(schedule, plan, common);
   for (const sweep::Curve& curve : schedule.curves())
     for (const sweep::Point& point : curve.points)
       if (const auto claim = store.claim(point)) store.announce(plan, point);
@@ -183,6 +193,7 @@ void run_run(const SweepOptions& options, const Common& common) {
   if (!job || job->is_master()) schedule.emplace(plan, store, shard);
   if (schedule) {
     note_repeats(*schedule, common);
+    note_units_of(*schedule, plan, common);
     if (!job) require_memory_together(*schedule, workers.count, "--threads");
   }
   {

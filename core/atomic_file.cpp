@@ -83,6 +83,15 @@ bool only_listed(const fs::path& folder, const Manifest& manifest) {
   return true;
 }
 
+/// Gives a file that replaces another the permissions, and where possible the owner, of the other.
+void keep_rights(const fs::path& old, const fs::path& fresh) {
+  struct stat about = {};
+  if (::stat(old.c_str(), &about) != 0) return;
+  constexpr mode_t kRights = S_IRWXU | S_IRWXG | S_IRWXO;
+  if (::chown(fresh.c_str(), about.st_uid, about.st_gid) != 0) errno = 0;  // another user's file
+  if (::chmod(fresh.c_str(), about.st_mode & kRights) != 0) errno = 0;
+}
+
 /// Removes the listed, unchanged files of a folder, its manifest, and the folders that are then empty.
 void remove_listed(const fs::path& folder, const Manifest& manifest) {
   std::error_code ec;
@@ -192,6 +201,7 @@ void AtomicPath::place_file(const fs::path& target) {
   if (fs::exists(fs::symlink_status(target, ec)) &&
       (!fs::is_regular_file(target, ec) || !may_replace(target, product_)))
     give_way(target, "a file of that name");
+  keep_rights(target, part_);
   fs::rename(part_, target, ec);
   if (ec)
     throw RunError(given_.string() + ": the finished output cannot be renamed to this path (" + ec.message() +

@@ -43,7 +43,23 @@ bool made_by_twincell(hid_t file) {
          h5::read_text_attribute(creator.get(), "name") == std::vector<std::string>{"twincell"};
 }
 
+/// Whether a trajectory states this source, or none. \param source empty: any
+bool is_of_source(hid_t file, const std::string& source) {
+  if (source.empty() || H5Lexists(file, "twincell", H5P_DEFAULT) <= 0) return true;
+  const h5::Handle ours = h5::own(H5Oopen(file, "twincell", H5P_DEFAULT), "twincell");
+  const std::vector<std::string> stated = h5::read_text_attribute(ours.get(), "source");
+  return stated.empty() || stated.front() == source;
+}
+
 }  // namespace
+
+Product Product::trajectory(const std::string& source) {
+  return {.name = source == "simulation"   ? "a trajectory of a simulation"
+                  : source == "experiment" ? "a trajectory of an experiment"
+                                           : "a trajectory",
+          .sign = Sign::h5md_creator,
+          .mark = source};
+}
 
 Product Product::table(const std::string& heading) {
   return {.name = "a table with these columns",
@@ -56,7 +72,8 @@ bool is_product(const std::filesystem::path& file, const Product& product) {
     case Product::Sign::none:
       return false;
     case Product::Sign::h5md_creator:
-      return hdf5_says(file, made_by_twincell);
+      return hdf5_says(file,
+                       [&](hid_t id) { return made_by_twincell(id) && is_of_source(id, product.mark); });
     case Product::Sign::results_group:
       return hdf5_says(file, [](hid_t id) {
         return H5Lexists(id, "results", H5P_DEFAULT) > 0 && H5Lexists(id, "provenance", H5P_DEFAULT) > 0;

@@ -14,7 +14,7 @@ struct Product {
   /// How a file of this kind is recognised.
   enum class Sign {
     none,             ///< it is not: an existing file never counts as a product
-    h5md_creator,     ///< HDF5, /h5md/creator@name = "twincell"
+    h5md_creator,     ///< HDF5, /h5md/creator@name = "twincell"; /twincell@source = `mark` if both are stated
     results_group,    ///< HDF5 with /results and /provenance
     checkpoint,       ///< HDF5 with the root attribute "sha256"
     first_line,       ///< the first line is `mark`
@@ -37,7 +37,8 @@ struct Product {
     return !folder && (sign == Sign::first_line || sign == Sign::beginning || sign == Sign::json_member);
   }
 
-  static Product trajectory() { return {.name = "a trajectory", .sign = Sign::h5md_creator, .mark = {}}; }
+  /// \param source "simulation" or "experiment": one never replaces the other; empty: of any source
+  static Product trajectory(const std::string& source = {});
   static Product results() { return {.name = "a results file", .sign = Sign::results_group, .mark = {}}; }
   static Product checkpoint() { return {.name = "a checkpoint", .sign = Sign::checkpoint, .mark = {}}; }
   /// A CSV table with this header line.

@@ -92,8 +92,39 @@ std::string first_entry(const fs::path& folder, bool shared, const Where& where)
   return first;
 }
 
+bool is_forced() {
+  const std::lock_guard lock(rules().mutex);
+  return rules().force;
+}
+
+/// How the user may proceed, as the end of a message about a file in the way.
+std::string or_by_force() {
+  return rules().has_force ? ", or replace it with --force" : "";
+}
+
+/// Refuses an existing file that its user protects, or that belongs to another product.
+void require_unprotected(const fs::path& final, const Product& product, const Where& where) {
+  struct stat about = {};
+  constexpr mode_t kWritable = S_IWUSR | S_IWGRP | S_IWOTH;  // root may write to any file
+  if (::stat(final.c_str(), &about) != 0) return;
+  if ((about.st_mode & kWritable) == 0 || ::access(final.c_str(), W_OK) != 0)
+    throw ConfigError(where, fmt::format("the file is write-protected; choose another name, or change its "
+                                         "permissions{}.",
+                                         or_by_force()));
+  const bool is_data =
+      product.sign == Product::Sign::h5md_creator || product.sign == Product::Sign::results_group;
+  if (!is_data) return;
+  const auto manifest = Manifest::read(final.parent_path());
+  if (manifest && manifest->files.contains(final.filename().string()))
+    throw ConfigError(where, fmt::format("the file belongs to the folder '{}', which is {}; choose another "
+                                         "name{}.",
+                                         final.parent_path().string(), manifest->product, or_by_force()));
+}
+
 void require_file(const fs::path& final, const Product& product, const Where& where) {
   std::error_code ec;
+  if (final.filename() == Manifest::kName)
+    throw ConfigError(where, "this name is that of the list of the files in a folder of twincell.");
   const fs::file_status status = fs::status(final, ec);
   for (const fs::path& input : inputs()) {
     if (fs::exists(status) && same_file(final, input))
@@ -120,7 +151,8 @@ void require_file(const fs::path& final, const Product& product, const Where& wh
                                   product.sign == Product::Sign::none
                                       ? fmt::format("{} does not state which program made it", product.name)
                                       : fmt::format("is not {} made by twincell", product.name),
-                                  rules().has_force ? ", or replace it with --force" : ""));
+                                  or_by_force()));
+  if (!is_forced()) require_unprotected(final, product, where);
 }
 
 void require_folder(const fs::path& final, const Product& product, const Where& where) {

@@ -2,13 +2,17 @@
 
 #include <toml++/toml.h>
 
+#include <cstdint>
 #include <sstream>
+#include <string>
 
 namespace twincell {
 
 namespace {
 
+/// A whole number is written in decimal digits, also if the file has it as 0x1 or 0b1.
 std::string literal_of(const toml::node& node) {
+  if (const toml::value<std::int64_t>* whole = node.as_integer()) return std::to_string(whole->get());
   std::ostringstream out;
   node.visit([&](const auto& value) { out << value; });
   return out.str();

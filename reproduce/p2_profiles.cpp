@@ -209,8 +209,9 @@ std::vector<Target> targets_12(const std::vector<double>& depths, const ProfileO
       constexpr double kBase = 3;
       verdicts.push_back(all_of({judge(p->hottest_height(), 0, kBase), seen(p->second().has_value())}));
     }
-  low.verdict = all_of(verdicts);
-  if (low.verdict == Verdict::inconclusive)
+  constexpr std::size_t kDepthsOfFigure = 4;  // N = 4, 6, 8, 10
+  low.verdict = all_of(verdicts, kDepthsOfFigure);
+  if (all_of(verdicts) == Verdict::inconclusive)
     low.reason = "a second peak does not stand out of the noise of its slabs";
 
   Target warm{"W = 22.35, N = 4: no second peak, hottest 7 to 10 d above the base", "7 to 10", "",
@@ -394,7 +395,7 @@ std::vector<Target> targets_14(const Pair& pair) {
     }
   if (!verdicts.empty() && rough.measured.empty())
     rough.measured = fmt::format("none at {} W", verdicts.size());
-  rough.verdict = all_of(verdicts);
+  rough.verdict = all_of(verdicts, pair.rough.size());
   Target off{"hottest off the base at high W, smooth", "z > 1 at W >= 22", "", Verdict::absent, ""};
   verdicts.clear();
   for (std::size_t k = 1; k < pair.smooth.size(); ++k)

@@ -75,4 +75,10 @@ Verdict all_of(const std::vector<Verdict>& verdicts) {
   return Verdict::absent;
 }
 
+Verdict all_of(const std::vector<Verdict>& verdicts, std::size_t cases) {
+  const Verdict of_measured = all_of(verdicts);
+  const bool holds = of_measured == Verdict::pass || of_measured == Verdict::consistent;
+  return holds && verdicts.size() < cases ? Verdict::inconclusive : of_measured;
+}
+
 }  // namespace twincell::reproduce

@@ -3,6 +3,7 @@
 /// The one rule by which a measured number with its interval is compared with a target.
 
 #include <array>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
@@ -72,5 +73,8 @@ Verdict best_of(Verdict a, Verdict b);
 /// Verdict on a statement that holds if all of its parts do: the first of fail, inconclusive, consistent and
 /// pass that is among the parts; absent if there is no part.
 Verdict all_of(const std::vector<Verdict>& verdicts);
+/// The same of a statement about `cases` cases, such as every N of a figure: inconclusive instead of
+/// consistent or pass if fewer are among the parts.
+Verdict all_of(const std::vector<Verdict>& verdicts, std::size_t cases);
 
 }  // namespace twincell::reproduce

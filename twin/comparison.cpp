@@ -52,6 +52,28 @@ Sides read_sides(const ComparingOptions& options) {
   return sides;
 }
 
+/// A note on films of one cell that show nearly, but not exactly, as many beads: some were missed, or are
+/// none.
+void note_unequal_beds(const Sides& sides, const std::vector<analysis::RunEnds>& ends,
+                       std::vector<std::string>& notes) {
+  constexpr double kSameWidth = 0.02, kSameBed = 0.15;  // relative
+  std::size_t fewest = 0, most = 0;
+  for (std::size_t e = 1; e < sides.n_experiments; ++e) {
+    if (ends[e].first.n_present() < ends[fewest].first.n_present()) fewest = e;
+    if (ends[e].first.n_present() > ends[most].first.n_present()) most = e;
+  }
+  if (sides.n_experiments < 2) return;
+  const auto few = static_cast<double>(ends[fewest].first.n_present()),
+             many = static_cast<double>(ends[most].first.n_present());
+  const auto width = [&](std::size_t e) { return sides.trajectories[e]->info().box.size().x(); };
+  if (few == many || few < (1 - kSameBed) * many || std::abs(width(fewest) / width(most) - 1) > kSameWidth)
+    return;
+  notes.push_back(fmt::format(
+      "{} shows {} beads in its first frame and {} shows {}: if the bed was the same, beads were missed or "
+      "other objects were taken for beads (twincell locate --overlay).",
+      sides.trajectories[fewest]->name(), few, sides.trajectories[most]->name(), many));
+}
+
 /// Refuses a run that is on both sides, and two- and three-dimensional runs on one side, whose phase
 /// boundaries would be pooled. Notes what is unusual. \throws ConfigError
 void check_sides(const Sides& sides, std::vector<std::string>& notes) {
@@ -74,6 +96,7 @@ void check_sides(const Sides& sides, std::vector<std::string>& notes) {
     if (sides.side_of(i) == analysis::Side::experiment && run.info().source == "simulation")
       notes.push_back(fmt::format("{} is a simulation and is given as experiment.", run.name()));
   }
+  note_unequal_beds(sides, ends, notes);
   const std::size_t n = sides.n_experiments;
   if (n > 0 && n < sides.trajectories.size() && dimension(0) != dimension(n))
     notes.push_back(
@@ -359,11 +382,10 @@ void limit_pictures(std::vector<analysis::Run>& runs) {
 
 }  // namespace
 
-NotedComparison compare_runs(const ComparingOptions& options, const ProgressOf& progress) {
+analysis::Comparison compare_runs(const ComparingOptions& options, const ProgressOf& progress) {
   const Sides sides = read_sides(options);
-  NotedComparison noted;
-  analysis::Comparison& c = noted.comparison;
-  std::vector<std::string>& notes = noted.notes;
+  analysis::Comparison c;
+  std::vector<std::string>& notes = c.notes;
   check_sides(sides, notes);
   c.runs = analyse(sides, options, progress, notes, c.checks);
   refuse_repeated_runs(c.runs);
@@ -375,7 +397,7 @@ NotedComparison compare_runs(const ComparingOptions& options, const ProgressOf& 
   c.boundaries = analysis::find_boundaries(c.runs);
   for (std::string& note : add_sweeps(options.sweeps, c)) notes.push_back(std::move(note));
   c.differences = analysis::find_differences(c.runs, c.matches, c.checks);
-  return noted;
+  return c;
 }
 
 }  // namespace twincell::twin

@@ -32,18 +32,12 @@ struct ComparingOptions {
   int threads = 1;
 };
 
-/// A comparison with the sentences that the user should read.
-struct NotedComparison {
-  analysis::Comparison comparison;
-  std::vector<std::string> notes;
-};
-
 /// Analyses every run, places it in the phase diagram, finds phase boundaries, and traces the differences
 /// between the sides to their sources. Each run keeps at most 20 snapshots for the report, fewer if many runs
 /// or beads would make the page larger than about 20 MB.
 /// The notes name frames that no longer exist, simulations that could not be filmed, and pairs of runs that
 /// are compared although their drives differ.
 /// \throws InputError, ConfigError, RunError as analyze_run
-NotedComparison compare_runs(const ComparingOptions& options, const ProgressOf& progress);
+analysis::Comparison compare_runs(const ComparingOptions& options, const ProgressOf& progress);
 
 }  // namespace twincell::twin

@@ -11,7 +11,10 @@
 #include <cmath>
 #include <csignal>
 #include <cstring>
+#include <fstream>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include "analysis/report/colours.hpp"
 #include "analysis/report/figure_style.hpp"
@@ -369,6 +372,20 @@ void run_gnuplot(const std::filesystem::path& folder, const std::string& script)
   std::filesystem::remove(messages);
 }
 
+/// gnuplot does not tell that a disk is full or a file too large for its limit; the end of the picture does.
+void require_whole(const std::filesystem::path& picture, const std::string& last_words) {
+  constexpr std::streamoff kTail = 64;  // bytes
+  std::ifstream stream(picture, std::ios::binary | std::ios::ate);
+  const std::streamoff size = stream ? static_cast<std::streamoff>(stream.tellg()) : 0;
+  std::string tail(static_cast<std::size_t>(std::min(size, kTail)), '\0');
+  stream.seekg(size - static_cast<std::streamoff>(tail.size()));
+  stream.read(tail.data(), static_cast<std::streamsize>(tail.size()));
+  if (tail.find(last_words) == std::string::npos)
+    throw RunError(
+        fmt::format("{}: gnuplot did not finish the picture: no space is left, or files may not be as large.",
+                    picture.string()));
+}
+
 }  // namespace
 
 void draw(const Figure& figure, const std::filesystem::path& folder) {
@@ -391,6 +408,9 @@ void draw(const Figure& figure, const std::filesystem::path& folder) {
   write_text_file(folder / (figure.name + ".gp"), script);
   if (own_svg) write_text_file(folder / (figure.name + ".svg"), figure.svg);
   run_gnuplot(folder, figure.name + ".gp");
+  for (const auto& [kind, last_words] :
+       {std::pair{"svg", "</svg>"}, std::pair{"pdf", "%%EOF"}, std::pair{"png", "IEND"}})
+    require_whole(folder / fmt::format("{}.{}", figure.name, kind), last_words);
 }
 
 Figure phase_diagram_figure(const std::vector<Run>& runs) {

@@ -123,6 +123,7 @@ std::string comparison_json(const Comparison& c) {
                                    {"verdict", verdict_word(c.runs, match)}});
   document["boundaries"] = boundaries_json(c.boundaries);
   document["differences"] = differences_json(c.differences, c.matches);
+  document["notes"] = c.notes;
   return json_text(document);
 }
 

@@ -19,7 +19,7 @@ std::string comparison_text(const Comparison& comparison);
 std::string comparison_summary(const Comparison& comparison);
 
 /// The comparison as the text of one JSON object: {"conclusion": "…", "runs": […], "matches": […],
-/// "boundaries": […], "differences": […]}.
+/// "boundaries": […], "differences": […], "notes": […]}.
 std::string comparison_json(const Comparison& comparison);
 
 /// The kind of output to which a report folder belongs.

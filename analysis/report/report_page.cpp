@@ -15,6 +15,7 @@
 #include "core/atomic_file.hpp"
 #include "core/escape.hpp"
 #include "core/json_text.hpp"
+#include "core/plural.hpp"
 #include "core/provenance.hpp"
 
 namespace twincell::analysis {
@@ -159,11 +160,20 @@ std::vector<Section> sections_of(const Comparison& c, const std::vector<Figure>&
   return list;
 }
 
-/// "cell 10 σ wide, N_l = 6 and 10": the width of the first run, all heights; "sweep" without runs.
-std::string cell_words(const Comparison& c) {
-  if (c.runs.empty()) return "sweep";
-  return fmt::format("cell {:.3g} σ wide, N_l = {:.3g}", c.runs.front().box.size().x(),
-                     fmt::join(heights_of(c.matches), " and "));
+/// "Experiment and simulation: cell 10 σ wide, N_l = 6 and 10": the sides that there are, the width of the
+/// first run, all heights.
+std::string title_of(const Comparison& c) {
+  if (c.runs.empty()) return "Simulated phase diagram";
+  bool experiment = false, simulation = false;
+  for (const Match& match : c.matches) {
+    experiment = experiment || !match.experiments.empty();
+    simulation = simulation || !match.simulations.empty();
+  }
+  return fmt::format("{}: cell {:.3g} σ wide, N_l = {:.3g}",
+                     experiment && simulation ? "Experiment and simulation"
+                     : experiment             ? "Experiment"
+                                              : "Simulation",
+                     c.runs.front().box.size().x(), fmt::join(heights_of(c.matches), " and "));
 }
 
 /// The conclusion as the box that opens the page. Its class says by colour whether the sides agree.
@@ -181,19 +191,29 @@ std::string verdict_box(const Comparison& c) {
   return html + "</div>\n";
 }
 
+/// The notes that the program printed, folded if there are many.
+std::string notes_list(const Comparison& c) {
+  constexpr std::size_t kFew = 6;
+  if (c.notes.empty()) return {};
+  std::string html = fmt::format("<details class=\"notes\" id=\"notes\"{}><summary>{}</summary>\n<ul>\n",
+                                 c.notes.size() <= kFew ? " open" : "", plural(c.notes.size(), "note"));
+  for (const std::string& note : c.notes) html += "<li>" + typeset(note) + "</li>\n";
+  return html + "</ul></details>\n";
+}
+
 }  // namespace
 
 std::string report_page(const Comparison& c, const std::vector<Figure>& figures,
                         const std::filesystem::path& figure_folder, const std::string& provenance_json) {
   const nlohmann::json provenance = nlohmann::json::parse(provenance_json);
   const std::string date = provenance.value("utc", std::string()).substr(0, 10);
-  const std::string title = fmt::format("Experiment and simulation: {}", cell_words(c));
+  const std::string title = title_of(c);
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\">\n"
       "<title>{} ({})</title><style>{}</style></head><body>\n<header><h1>{}</h1><span>{} <button "
       "id=\"theme\" hidden>Dark</button></span></header>\n{}",
-      html_text(title), date, page_style(), typeset(title), date, verdict_box(c));
+      html_text(title), date, page_style(), typeset(title), date, verdict_box(c) + notes_list(c));
   html += kOpening;
   html +=
       "<p class=\"quiet\">Both sides went through the same analysis. A bed <em>bounces</em> if s<sub>b</sub> "

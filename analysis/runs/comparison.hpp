@@ -27,6 +27,7 @@ struct Comparison {
   std::vector<Difference> differences;
   Checks checks;
   std::vector<SweepPoint> sweep;
+  std::vector<std::string> notes;  ///< what the user should know about the runs, sentences
 };
 
 }  // namespace twincell::analysis

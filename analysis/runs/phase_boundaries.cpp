@@ -84,9 +84,11 @@ std::string boundary_of(const PhaseBoundary& boundary) {
 std::string boundary_text(const PhaseBoundary& boundary) {
   if (boundary.fitted && !boundary.half_width())
     return fmt::format("{:.3g}, interval open", *boundary.fitted);
-  if (boundary.gamma()) return fmt::format("{:.3g} ± {:.2g}", *boundary.gamma(), *boundary.half_width());
+  if (boundary.fitted) return fmt::format("{:.3g} ± {:.2g}", *boundary.fitted, *boundary.half_width());
+  if (boundary.below && boundary.above)
+    return fmt::format("between {:.3g} and {:.3g}", *boundary.below, *boundary.above);
   if (!boundary.below && !boundary.above)
-    return boundary.overlap ? "undetermined (seeds differ)" : "not found";
+    return boundary.overlap ? "undetermined (runs differ)" : "not found";
   return boundary.below ? fmt::format("above {:.3g}", *boundary.below)
                         : fmt::format("below {:.3g}", *boundary.above);
 }

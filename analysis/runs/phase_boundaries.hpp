@@ -40,7 +40,8 @@ std::vector<PhaseBoundary> find_boundaries(const std::vector<Run>& runs);
 /// Origin of a boundary: "experiment", "simulation", "simulation (random)", "sweep (random)", "sweep (random,
 /// drive.omega = 2)"; "twins" for simulations that start from a filmed packing.
 std::string boundary_of(const PhaseBoundary& boundary);
-/// Position of a boundary in Gamma: "1.25 ± 0.35", "above 2.5", "below 0.9".
+/// Position of a boundary in Gamma: "between 0.9 and 1.6", "above 2.5", "below 0.9"; "1.27 ± 0.07" if a sweep
+/// fitted it.
 std::string boundary_text(const PhaseBoundary& boundary);
 
 }  // namespace twincell::analysis

@@ -5,14 +5,18 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <complex>
+#include <cstdint>
 #include <map>
 #include <numbers>
 #include <optional>
 #include <set>
 #include <string_view>
+#include <unordered_map>
+#include <utility>
 
 #include "analysis/neighbours/bond_orientation.hpp"
 #include "analysis/order/orientation.hpp"
@@ -435,6 +439,48 @@ bool RunEnds::of_same_run(const RunEnds& other) const {
   return n_frames > 0 && n_frames == other.n_frames && same(first, other.first) && same(last, other.last);
 }
 
+namespace {
+
+/// The same for beads in any order: the sum over the beads of the hash (FNV-1a) of their coordinates.
+std::uint64_t hash_of(const Frame& frame) {
+  std::uint64_t sum = 0;
+  for (const Vec3& r : frame.position) {
+    if (r.hasNaN()) continue;
+    std::uint64_t hash = 14695981039346656037U;
+    for (const double x : {r.x(), r.y(), r.z()})
+      for (int byte = 0; byte < 8; ++byte)
+        hash = (hash ^ ((std::bit_cast<std::uint64_t>(x) >> (8 * byte)) & 0xffU)) * 1099511628211U;
+    sum += hash;
+  }
+  return sum;
+}
+
+/// The first frame in which each arrangement of beads is seen.
+using Arrangements = std::unordered_map<std::uint64_t, std::size_t>;
+
+Arrangements arrangements_of(const TrajectorySource& run) {
+  Arrangements seen;
+  Frame frame;
+  for (std::size_t f = 0; f < run.n_frames(); ++f) {
+    run.read(f, frame);
+    seen.emplace(hash_of(frame), f);
+  }
+  return seen;
+}
+
+/// A frame of one run and the equal one of another, if they have one; the first frames may be one start of
+/// two runs.
+std::optional<std::pair<std::size_t, std::size_t>> shared_frame(const Arrangements& a,
+                                                                const Arrangements& b) {
+  std::optional<std::pair<std::size_t, std::size_t>> earliest;
+  for (const auto& [hash, of_b] : b)
+    if (const auto at = a.find(hash); at != a.end() && at->second + of_b > 0)
+      if (!earliest || of_b < earliest->second) earliest = {at->second, of_b};
+  return earliest;
+}
+
+}  // namespace
+
 void require_one_condition(const std::vector<const TrajectorySource*>& trajectories) {
   constexpr double kSameDrive = 0.02, kSameBeads = 0.1;
   const auto refuse = [](const TrajectorySource& a, const TrajectorySource& b, const std::string& why) {
@@ -443,8 +489,10 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
   };
   std::vector<RunEnds> ends;
   std::vector<std::map<std::string, std::string>> keys, motions;
+  std::vector<Arrangements> arrangements;
   for (const TrajectorySource* t : trajectories) {
     ends.emplace_back(*t);
+    arrangements.push_back(arrangements_of(*t));
     motions.push_back(motion_keys(t->info().provenance_json));
     keys.push_back(bed_keys(t->info().provenance_json));
   }
@@ -500,6 +548,12 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
         refuse(*trajectories[k], b,
                "both contain the same run, of which they recorded different parts; another seed is needed to "
                "measure the scatter");
+      else if (const auto frames = shared_frame(arrangements[k], arrangements[i]))
+        refuse(
+            *trajectories[k], b,
+            fmt::format("frame {} there and frame {} here are equal, bead for bead, so that they are parts "
+                        "of one run; another seed or repeat is needed to measure the scatter",
+                        frames->first, frames->second));
   }
 }
 

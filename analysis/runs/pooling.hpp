@@ -63,7 +63,8 @@ struct RunEnds {
 /// Rejects runs that cannot be pooled. \throws ConfigError with the names of two runs and the property in
 /// which they differ: source, dimension, Gamma, omega or width (2 %), number of beads (10 %), phases per
 /// cycle, kind of start, and, where the provenance of both contains a scene, a key of its tables contact,
-/// beads or cell (bed_keys); or if both contain the same run, bead for bead \pre every trajectory has frames
+/// beads or cell (bed_keys); or if both contain the same run, bead for bead, or a frame in common, except
+/// their first ones \pre every trajectory has frames
 void require_one_condition(const std::vector<const TrajectorySource*>& trajectories);
 
 }  // namespace twincell::analysis

@@ -54,6 +54,37 @@ double loss_of(const std::vector<Point>& points, double reach, double mu, double
   return sum;
 }
 
+/// Whether the impacts that slide have no common Psi_1 - Psi_2, as Walton's branch has, in words; empty: they
+/// have one. The steeper half of them is far from the transition to sticking. Outliers of the fit count: they
+/// may be the impacts of another law.
+std::string not_one_branch(const std::vector<Point>& points, double mu, double beta, double reach) {
+  constexpr std::size_t kMinImpacts = 10;
+  constexpr double kMaxSlope = 0.04, kClearly = 5;  // of Psi_1 - Psi_2 with Psi_1; standard errors
+  std::vector<Point> slides;
+  for (const Point& q : points)
+    if (-beta * q.psi_1 < q.psi_1 - mu * reach) slides.push_back(q);
+  std::sort(slides.begin(), slides.end(), [](const Point& a, const Point& b) { return a.psi_1 < b.psi_1; });
+  slides.erase(slides.begin(), slides.begin() + static_cast<std::ptrdiff_t>(slides.size() / 2));
+  if (slides.size() < kMinImpacts) return {};
+  const auto n = static_cast<double>(slides.size());
+  double mean_psi = 0, mean_lost = 0, squares = 0, products = 0;
+  for (const Point& q : slides) mean_psi += q.psi_1 / n, mean_lost += (q.psi_1 - q.psi_2) / n;
+  for (const Point& q : slides) {
+    squares += (q.psi_1 - mean_psi) * (q.psi_1 - mean_psi);
+    products += (q.psi_1 - mean_psi) * (q.psi_1 - q.psi_2 - mean_lost);
+  }
+  if (!(squares > 0)) return {};
+  const double slope = products / squares;
+  std::vector<double> rest;
+  for (const Point& q : slides) rest.push_back(q.psi_1 - q.psi_2 - mean_lost - slope * (q.psi_1 - mean_psi));
+  const double error = robust_spread(std::move(rest)) / std::sqrt(squares);
+  if (slope < kMaxSlope || slope < kClearly * error) return {};
+  return fmt::format(
+      "mu is undetermined: of impacts that slide Psi_1 - Psi_2 is one number in Walton's representation, but "
+      "here it grows by {:.2g} +- {:.1g} of Psi_1: most do not slide throughout",
+      slope, error);
+}
+
 void fit_tangential(const std::vector<Impact>& impacts, double shape, WaltonFit& out) {
   std::vector<Point> points;
   bool weighted = true;
@@ -99,6 +130,10 @@ void fit_tangential(const std::vector<Impact>& impacts, double shape, WaltonFit&
     out.tangential.standard_errors[0] = std::sqrt(out.tangential.covariance(0, 0));
   }
   for (const Point& q : kept) (-beta * q.psi_1 >= q.psi_1 - mu * reach ? out.sticking : out.sliding) += 1;
+  if (std::string why = not_one_branch(points, mu, beta, reach); !why.empty()) {
+    out.tangential.undetermined.emplace_back("mu");
+    out.notes.push_back(std::move(why));
+  }
   // Scatter alone can place two or three impacts on a branch.
   constexpr std::size_t kMinImpacts = 4;
   const auto leave_open = [&](const char* name, const char* branch, std::size_t n) {

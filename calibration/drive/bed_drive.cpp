@@ -131,6 +131,7 @@ void BedSteps::append(const Frame& frame) {
       step.begin = phase + std::remainder(before_.time / period - phase, 1.0);
       step.end = step.begin + (frame.time - before_.time) / period;
       // The upper median alone would bias every step upwards; average it with the lower median.
+      step.spread = robust_spread(dz, upper_median(std::vector<double>(dz)));
       step.dz = (upper_median(std::move(dz)) - upper_median(std::move(down))) / 2;
       steps_.push_back(step);
     }
@@ -199,13 +200,14 @@ std::optional<BedDrive> at_another_phase(const BedSteps& bed, const Drive& drive
   return found;
 }
 
-/// The phase at which the bed is accelerated downwards most, in g: mean over cycles and its standard error.
-struct Fall {
+/// Acceleration of the bed at a phase, in g, upwards: mean over cycles and its standard error.
+struct Acceleration {
   std::int32_t phase = -1;
-  double acceleration = 0, error = 0;
+  double mean = 0, error = 0;
 };
 
-Fall largest_fall(const std::vector<BedSteps::Step>& steps, const Drive& drive) {
+/// Of the phases that are seen in enough cycles.
+std::vector<Acceleration> accelerations(const std::vector<BedSteps::Step>& steps, const Drive& drive) {
   struct Sums {
     double n = 0, sum = 0, squares = 0;
   };
@@ -220,21 +222,45 @@ Fall largest_fall(const std::vector<BedSteps::Step>& steps, const Drive& drive) 
     Sums& sums = phases[now.phase];
     sums.n += 1, sums.sum += a, sums.squares += a * a;
   }
-  Fall fall;
+  std::vector<Acceleration> all;
   for (const auto& [phase, sums] : phases) {
     if (sums.n < kMinCycles) continue;
     const double mean = sums.sum / sums.n,
                  error = std::sqrt(std::max(0.0, sums.squares / sums.n - mean * mean) / (sums.n - 1));
-    if (mean < fall.acceleration) fall = {phase, mean, error};
+    all.push_back({phase, mean, error});
   }
-  return fall;
+  return all;
+}
+
+constexpr double kMaxDeviation = 3;  // standard errors
+
+/// The longest part of a cycle in which the bed is accelerated downwards by clearly more than `most` g.
+double time_of_fall(const std::vector<Acceleration>& all, double most, int phases_per_cycle) {
+  std::vector<bool> falls(static_cast<std::size_t>(phases_per_cycle), false);
+  for (const Acceleration& a : all)
+    if (a.phase < phases_per_cycle)
+      falls[static_cast<std::size_t>(a.phase)] = a.mean + kMaxDeviation * a.error < -most;
+  std::size_t longest = 0, now = 0;
+  for (std::size_t k = 0; k < 2 * falls.size(); ++k) {  // the cycle is periodic
+    now = falls[k % falls.size()] ? now + 1 : 0;
+    longest = std::max(longest, std::min(now, falls.size()));
+  }
+  return static_cast<double>(longest) / phases_per_cycle;
+}
+
+/// Whether the columns of the bed move together, unlike the beads of a gas.
+bool moves_as_one(const std::vector<BedSteps::Step>& steps) {
+  constexpr double kMaxSpread = 0.3;  // of the steps
+  double squares = 0, spreads = 0;
+  for (const BedSteps::Step& step : steps) squares += step.dz * step.dz, spreads += step.spread * step.spread;
+  return spreads < kMaxSpread * kMaxSpread * squares;
 }
 
 /// The observation that contradicts any drive of this strength, as a clause; otherwise empty.
-std::string contradiction_of(const std::vector<BedSteps::Step>& steps, const Drive& drive) {
+std::string contradiction_of(const std::vector<BedSteps::Step>& steps, const Drive& drive,
+                             int phases_per_cycle) {
   constexpr double kMinMotion = 0.05;       // rms step of a moving bed, fraction of the plate's
   constexpr double kMaxAcceleration = 1.5;  // multiple of gravity, or of the acceleration of the plate
-  constexpr double kMaxDeviation = 3;       // standard errors
   double moved = 0, of_plate = 0;           // sums of squares
   for (const BedSteps::Step& step : steps) {
     const double plate = drive.amplitude * (std::sin(kTurn * step.end) - std::sin(kTurn * step.begin));
@@ -244,18 +270,81 @@ std::string contradiction_of(const std::vector<BedSteps::Step>& steps, const Dri
   if (moved < kMinMotion * kMinMotion * of_plate)
     return fmt::format("the beads stand still in the frames, but the cell states a plate of A = {:.4g} sigma",
                        drive.amplitude);
-  const Fall fall = largest_fall(steps, drive);
+  const std::vector<Acceleration> all = accelerations(steps, drive);
+  const auto fall =
+      std::min_element(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.mean < b.mean; });
+  if (fall == all.end()) return {};
   if (const double most = kMaxAcceleration * std::max(1.0, drive.gamma());
-      fall.acceleration < -most - kMaxDeviation * fall.error)
+      fall->mean < -most - kMaxDeviation * fall->error)
     return fmt::format(
         "the bed is accelerated downwards by {:.2g} +- {:.1g} g at phase {}, more than gravity and a plate "
         "with Gamma = {:.3g} can do: the picture is upside down, or the scale, the frame rate or the "
         "frequency is wrong",
-        -fall.acceleration, fall.error, fall.phase, drive.gamma());
+        -fall->mean, fall->error, fall->phase, drive.gamma());
+  // With fewer phases, the largest step of the velocity of a short flight contains its impact.
+  constexpr int kMinPhases = 12;
+  if (phases_per_cycle < kMinPhases || !moves_as_one(steps)) return {};
+  constexpr double kFlies = 1.3;         // Gamma
+  constexpr double kMinFall = 0.5;       // multiple of gravity: side walls and liquid retard a bed
+  constexpr double kSustained = 2;       // multiple of gravity
+  constexpr double kMinDuration = 0.12;  // of a cycle; after an impact the beads push each other for less
+  if (drive.gamma() > kFlies && fall->mean - kMaxDeviation * fall->error > -kMinFall)
+    return fmt::format(
+        "the bed is accelerated downwards by {:.2g} +- {:.1g} g at most, but a plate with Gamma = {:.3g} "
+        "throws it, and then it falls by 1 g: the frequency or the scale is wrong",
+        -fall->mean, fall->error, drive.gamma());
+  if (const double lasts = time_of_fall(all, kSustained, phases_per_cycle); lasts >= kMinDuration)
+    return fmt::format(
+        "the bed is accelerated downwards by more than {:g} g during {:.2g} of a cycle, by {:.2g} +- {:.1g} "
+        "g at most, but only gravity pulls it down: the frequency, the frame rate or the scale is wrong",
+        kSustained, lasts, -fall->mean, fall->error);
+  return {};
+}
+
+/// The same of a bed that leaves a plate with Gamma < 1. \pre the phases of the frames are those of the plate
+std::string flight_from_weak_plate(const std::vector<BedSteps::Step>& steps, const Drive& drive) {
+  constexpr double kRests = 0.95;         // Gamma
+  constexpr double kMinAmplitude = 0.03;  // sigma; smaller ones are lost in the errors of the centres
+  constexpr double kMaxApart = 0.35;      // rms, of the steps of the plate; half a frame of delay gives 0.16
+  if (drive.gamma() > kRests || drive.amplitude < kMinAmplitude) return {};
+  struct Sums {
+    double n = 0, apart = 0, plate = 0;
+  };
+  std::map<std::int32_t, Sums> phases;
+  for (const BedSteps::Step& step : steps) {
+    const double plate = drive.amplitude * (std::sin(kTurn * step.end) - std::sin(kTurn * step.begin));
+    Sums& sums = phases[step.phase];
+    sums.n += 1, sums.apart += step.dz - plate, sums.plate += plate;
+  }
+  double apart = 0, size = 0;
+  for (const auto& [phase, sums] : phases) {
+    if (sums.n < kMinCycles) continue;
+    apart += sums.apart * sums.apart / (sums.n * sums.n), size += sums.plate * sums.plate / (sums.n * sums.n);
+  }
+  if (size == 0 || apart < kMaxApart * kMaxApart * size) return {};
+  return fmt::format(
+      "the bed leaves its plate, which no plate with Gamma = {:.3g} can make it do: the frequency or the "
+      "scale is wrong",
+      drive.gamma());
+}
+
+/// Why the bed cannot be compared with its drive; empty if it can.
+std::string not_comparable(const BedSteps& bed, const TrajectoryInfo& info) {
+  if (!info.drive->harmonics.empty() || info.drive->recorded || info.drive->ramp)
+    return "the drive is not a sine";
+  if (info.phases_per_cycle == 0) return "the frames have no fixed phases";
+  if (bed.steps().empty())
+    return fmt::format("fewer than {} columns of beads are seen in consecutive frames", kMinBeads);
   return {};
 }
 
 }  // namespace
+
+std::string contradiction_of_bed(const BedSteps& bed, const TrajectoryInfo& info) {
+  if (!not_comparable(bed, info).empty()) return {};
+  std::string why = contradiction_of(bed.steps(), *info.drive, info.phases_per_cycle);
+  return why.empty() ? flight_from_weak_plate(bed.steps(), *info.drive) : why;
+}
 
 BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info) {
   BedDrive none;
@@ -263,12 +352,8 @@ BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info) {
     none.not_comparable = std::move(why);
     return none;
   };
-  if (!info.drive->harmonics.empty() || info.drive->recorded || info.drive->ramp)
-    return because("the drive is not a sine");
-  if (info.phases_per_cycle == 0) return because("the frames have no fixed phases");
-  if (bed.steps().empty())
-    return because(fmt::format("fewer than {} columns of beads are seen in consecutive frames", kMinBeads));
-  if (std::string why = contradiction_of(bed.steps(), *info.drive); !why.empty())
+  if (std::string why = not_comparable(bed, info); !why.empty()) return because(std::move(why));
+  if (std::string why = contradiction_of(bed.steps(), *info.drive, info.phases_per_cycle); !why.empty())
     return {.amplitude = 0, .contradiction = std::move(why)};
   if (const auto found = amplitude_of(bed.steps(), *info.drive, kMinTrial, kMaxTrial)) return *found;
   if (const auto found = at_another_phase(bed, *info.drive, info.phases_per_cycle)) return *found;

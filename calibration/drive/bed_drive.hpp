@@ -42,6 +42,7 @@ class BedSteps : public TrajectorySink {
     std::int32_t phase = -1;    ///< of the earlier frame
     double begin = 0, end = 0;  ///< fractions of a cycle since phase 0 of that cycle
     double dz = 0;              ///< median over the beads, sigma
+    double spread = 0;          ///< robust standard deviation among the beads, sigma
   };
   explicit BedSteps(const TrajectoryInfo& info) : info_(info) {}
   void append(const Frame& frame) override;
@@ -69,5 +70,14 @@ struct BedDrive {
 /// within a tenth. A contradiction is a bed that stands still, or whose downward acceleration at some phase
 /// is more than 1.5 times the larger of gravity and the plate's acceleration. \pre `info` states the drive
 BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info);
+
+/// What in the motion of a bed contradicts its drive, where the plate in the picture agrees with the
+/// amplitude and the phases: it stands still; it falls faster than gravity, or by less than half of it where
+/// Gamma > 1.3 throws it, or by more than 2 g for an eighth of a cycle; or it leaves a plate with
+/// Gamma < 0.95.
+///
+/// \pre the trajectory has a drive with gravity
+/// \returns a clause; empty if nothing does, or if the drive is not a sine or the frames have no phases
+std::string contradiction_of_bed(const BedSteps& bed, const TrajectoryInfo& info);
 
 }  // namespace twincell::calibration

@@ -24,11 +24,14 @@ TrackedFilm planned(FilmedCell filmed, imaging::TrackedStack stack, DriveCheck c
   }();
   // With neither scale nor origin, nothing relates the heights of the bed to those of the plate.
   const bool placed = filmed.cell.pixels_per_sigma || filmed.cell.origin;
-  if (checks_drive(filmed, options) && check.by.empty() && check.disagreement.empty() && placed) {
+  if (checks_drive(filmed, options) && check.disagreement.empty() && placed) {
     const Stage checking(times, "drive check");
     BedSteps bed(plan.info);
     imaging::write_trajectory(stack, plan, bed);
-    check = check_by_bed(bed, plan.info, check);
+    if (check.by.empty())
+      check = check_by_bed(bed, plan.info, check);
+    else
+      check.disagreement = contradiction_of_bed(bed, plan.info);
   }
   if (plan.info.drive && filmed.measured_drive.empty()) record(check, plan.info);
   return {std::move(filmed.cell), std::move(stack), std::move(plan), std::move(check)};

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "core/constants.hpp"
 #include "core/error.hpp"
@@ -150,6 +152,13 @@ nlohmann::json json_of(const CurveFit& fit, const std::vector<DataPoint>& points
   return j;
 }
 
+/// Number of points that are equal to an earlier one.
+std::size_t repeated(const std::vector<DataPoint>& points) {
+  std::set<std::array<double, 4>> seen;
+  for (const DataPoint& p : points) seen.insert({p.x, p.y, p.sigma, p.trials});
+  return points.size() - seen.size();
+}
+
 }  // namespace
 
 void check_fit(const std::string& law, const std::optional<std::array<double, 2>>& window) {
@@ -171,6 +180,11 @@ TableFit fit_table(const Table& table, const std::string& law, FitColumns column
   if (untried > 0) fit.notes.push_back(fmt::format("{} without trials left out", plural(untried, "row")));
   if (!fit.weighted && !(columns.sigma.empty() && columns.trials.empty()))
     fit.notes.push_back(why_not_weighted(fit, points));
+  if (const std::size_t again = repeated(points); again > 0)
+    fit.notes.push_back(
+        fmt::format("{} equal to another one to the last digit; each counts as a measurement of "
+                    "its own, and the errors are too small if they are copies",
+                    again == 1 ? "1 point is" : fmt::format("{} points are", again)));
   return {std::move(fit), std::move(points), std::move(columns)};
 }
 

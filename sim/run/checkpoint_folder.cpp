@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <regex>
 
@@ -69,17 +70,19 @@ CheckpointFolder::~CheckpointFolder() {
 }
 
 void CheckpointFolder::remove_strays() const {
-  // Segments that do not belong to the state, and unfinished files of a killed run (temporary_files.hpp).
-  static const std::regex ours(
-      R"(segment-[0-9]{4,}\.h5|state\.h5|\.twincell-[0-9a-f]{16}(-[0-9a-v]{12}\.part\.h5|\.lock))");
+  // The segments that follow those of the state without a gap, as a killed run leaves them, and its
+  // unfinished files (temporary_files.hpp). Others may be the user's.
+  static const std::regex unfinished(R"(state\.h5|\.twincell-[0-9a-f]{16}(-[0-9a-v]{12}\.part\.h5|\.lock))");
   std::vector<fs::path> strays;
+  for (std::size_t k = checkpoint_.segments.size(); fs::exists(segment(k)); ++k) strays.push_back(segment(k));
   for (const auto& entry : fs::directory_iterator(folder_)) {
     const fs::path& path = entry.path();
-    bool counted = found_ && path.filename() == kState;
-    for (std::size_t k = 0; k < checkpoint_.segments.size(); ++k) counted = counted || path == segment(k);
-    if (!counted && std::regex_match(path.filename().string(), ours)) strays.push_back(path);
+    const bool counted = found_ && path.filename() == kState;
+    if (!counted && std::regex_match(path.filename().string(), unfinished)) strays.push_back(path);
   }
-  for (const fs::path& stray : strays) fs::remove(stray);
+  // The last segment first: what a killed program leaves has no gap.
+  std::sort(strays.begin(), strays.end());
+  for (auto stray = strays.rbegin(); stray != strays.rend(); ++stray) fs::remove(*stray);
 }
 
 template <class Work>

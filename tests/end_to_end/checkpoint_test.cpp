@@ -214,6 +214,14 @@ TEST_F(Checkpoints, DamageIsFound) {
   expect_refusal({"--resume"}, kInput, {"segment-0001.h5", "missing"});
 }
 
+TEST_F(Checkpoints, AUsersFileNamedLikeASegmentStays) {
+  ASSERT_EQ(stopped_in_the_middle(SIGINT).code, 130);
+  fs::copy_file(place_ / "segment-0001.h5", place_ / "segment-0099.h5");
+  const Ran rest = run_program(words({"--resume"}));
+  EXPECT_EQ(rest.code, kDone) << rest.err;
+  EXPECT_EQ(names_in(place_), std::vector<std::string>{"segment-0099.h5"});
+}
+
 TEST_F(Checkpoints, AnotherProgramsRunIsNotResumed) {
   ASSERT_EQ(stopped_in_the_middle(SIGINT).code, 130);
   const fs::path state = place_ / "state.h5";

@@ -237,9 +237,8 @@ TEST_F(DamagedRecords, RecordsOfATrajectory) {
     options.experiments = {at("e.h5")};
     options.film = false;
     const auto silent = [](const std::string&) { return std::make_unique<Progress>(); };
-    const twin::NotedComparison noted = twin::compare_runs(options, silent);
-    notes = noted.notes;
-    const analysis::Comparison& c = noted.comparison;
+    const analysis::Comparison c = twin::compare_runs(options, silent);
+    notes = c.notes;
     if (const auto& camera = c.runs.front().show.camera) {
       EXPECT_GT(camera->pixels_per_sigma, 0);
       EXPECT_GT(camera->width, 0);

@@ -2,7 +2,9 @@
 // the plate.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -169,10 +171,63 @@ TEST_F(DoubtfulRuns, UnitsOfAScaleAreNoted) {
   EXPECT_NE(si.err.find("cell.gravity = 9.81 is in units of scale.gravity_m_s2: gravity is 96.24 m/s^2"),
             std::string::npos)
       << si.err;
+  for (const std::string verb : {"explain", "measure"}) {
+    const Ran same = run_program(
+        {verb, folder_ / "scene.toml", "--set", "scale.sigma_mm=2", "--set", "scale.gravity_m_s2=981"});
+    EXPECT_NE(same.err.find("is it in m/s^2?"), std::string::npos) << verb << ": " << same.err;
+  }
   const Ran metre = simulate("metre.h5", {"scale.sigma_m=2", "scale.gravity_m_s2=9.81"});
   EXPECT_NE(metre.err.find("the bead diameter is 2e+03 mm"), std::string::npos) << metre.err;
   EXPECT_EQ(simulate("right.h5", {"scale.sigma_mm=2", "scale.gravity_m_s2=9.81"}).err.find("note"),
             std::string::npos);
+}
+
+TEST_F(DoubtfulRuns, ImportOfAFileInMillimetresNeedsGravityInItsUnits) {
+  ASSERT_EQ(simulate("run.h5", {"scale.sigma_mm=2", "scale.gravity_m_s2=9.81"}).code, 0);
+  ASSERT_EQ(
+      run_program({"export", folder_ / "run.h5", "--to", "xyz", "--units", "mm", "-o", folder_ / "mm.xyz"})
+          .code,
+      0);
+  const auto import = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"import", folder_ / "mm.xyz", "-o", folder_ / "in.h5", "--force"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  };
+  const Ran none = import({"--sigma", "2"});
+  EXPECT_EQ(none.code, 2);
+  EXPECT_NE(none.err.find("--gravity: is missing"), std::string::npos) << none.err;
+  const Ran both = import({"--sigma", "2", "--gravity", "9810"});
+  EXPECT_EQ(both.code, 0) << both.err;
+  H5mdReader in(folder_ / "in.h5"), run(folder_ / "run.h5");
+  Frame a, b;
+  in.read(3, a), run.read(3, b);
+  EXPECT_NEAR(a.time, b.time, 1e-3 * b.time + 1e-9);
+  EXPECT_NEAR((a.velocity[5] - b.velocity[5]).norm(), 0, 1e-3);
+}
+
+TEST_F(DoubtfulRuns, ImportedVelocitiesOfAnotherDirectionAreNoted) {
+  ASSERT_EQ(simulate("run.h5", {}).code, 0);
+  H5mdReader run(folder_ / "run.h5");
+  const auto note = [&](const std::function<std::array<double, 2>(const Vec3&)>& velocity) {
+    std::ofstream table(folder_ / "turned.csv");
+    table << "frame,particle,time,x,y,vx,vy\n";
+    Frame frame;
+    for (std::size_t f = 0; f < run.n_frames(); ++f) {
+      run.read(f, frame);
+      for (std::size_t i = 0; i < frame.position.size(); ++i) {
+        const auto [vx, vy] = velocity(frame.velocity[i]);
+        table << f << ',' << i << ',' << frame.time << ',' << frame.position[i].x() << ','
+              << frame.position[i].z() << ',' << vx << ',' << vy << '\n';
+      }
+    }
+    table.close();
+    return run_program({"import", folder_ / "turned.csv", "-o", folder_ / "in.h5", "--force", "--y-up"}).err;
+  };
+  const std::string turned = "velocities have another sign", exchanged = "of the velocities are exchanged";
+  const std::string right = note([](const Vec3& v) { return std::array{v.x(), v.z()}; });
+  EXPECT_EQ(right.find(turned), std::string::npos) << right;
+  EXPECT_EQ(right.find(exchanged), std::string::npos) << right;
+  EXPECT_NE(note([](const Vec3& v) { return std::array{v.x(), -v.z()}; }).find(turned), std::string::npos);
 }
 
 TEST_F(DoubtfulRuns, ComparedFrequenciesThatDifferAreNoted) {
@@ -183,6 +238,21 @@ TEST_F(DoubtfulRuns, ComparedFrequenciesThatDifferAreNoted) {
   EXPECT_EQ(ran.code, 0) << ran.err;
   // K_m = Gamma^2 g^2/(omega^2 sigma g)
   EXPECT_NE(ran.err.find("K_m is 0.5625 in slow.h5 and 0.1406 in fast.h5"), std::string::npos) << ran.err;
+}
+
+TEST_F(DoubtfulRuns, FilmsOfOneCellWithOtherNumbersOfBeadsAreNoted) {
+  ASSERT_EQ(simulate("all.h5", {"start.kind=random", "beads.count=30", "start.seed=2"}).code, 0);
+  ASSERT_EQ(simulate("missed.h5", {"start.kind=random", "beads.count=29"}).code, 0);
+  ASSERT_EQ(simulate("other.h5", {"start.kind=random", "beads.count=20"}).code, 0);
+  ASSERT_EQ(simulate("twin.h5", {"start.kind=random", "beads.count=30", "start.seed=3"}).code, 0);
+  const auto said = [&](const std::string& second) {
+    const Ran ran = run_program({"compare", "--experiment", folder_ / "all.h5", folder_ / second,
+                                 "--simulation", folder_ / "twin.h5", "-o", folder_ / ("report-" + second)});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    return ran.err;
+  };
+  EXPECT_NE(said("missed.h5").find("shows 29 beads in its first frame and"), std::string::npos);
+  EXPECT_EQ(said("other.h5").find("in its first frame"), std::string::npos);
 }
 
 TEST_F(DoubtfulRuns, TheOriginOfImportedBeadsMayBeStated) {

@@ -78,6 +78,17 @@ TEST(Fit, Refusals) {
             (std::vector<std::string>{"bad.csv", "p_s.csv", "short.csv", "zeros.csv"}));
 }
 
+TEST(Fit, CopiesOfPointsAreSaid) {
+  const TemporaryFolder folder;
+  put_file(folder / "once.csv", "x,y\n1,2\n2,4.1\n3,5.9\n4,8.2\n");
+  put_file(folder / "twice.csv", "x,y\n1,2\n2,4.1\n3,5.9\n4,8.2\n1,2\n2,4.1\n3,5.9\n4,8.2\n");
+  const Ran once = run_program({"fit", folder / "once.csv", "--law", "line"}),
+            twice = run_program({"fit", folder / "twice.csv", "--law", "line"});
+  EXPECT_EQ(once.out.find("to the last digit"), std::string::npos) << once.out;
+  EXPECT_NE(twice.out.find("4 points are equal to another one to the last digit"), std::string::npos)
+      << twice.out;
+}
+
 TEST(Fit, ErrorsThatAreNoneAreSaid) {
   const TemporaryFolder folder;
   put_file(folder / "flat.csv", "x,y,s\n1,2,0\n2,2,0\n4,2,0.1\n8,2,0\n16,2,0\n");

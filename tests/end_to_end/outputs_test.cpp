@@ -453,6 +453,46 @@ TEST(Outputs, FilesAreReplacedByTheirOwnKindOrByForce) {
   EXPECT_EQ(run_program({"simulate", "scene.toml", "-o", "notes.txt", "-q", "--force"}).code, 0);
 }
 
+// Root may write to any file, so that the permissions must be asked for.
+TEST(Outputs, AWriteProtectedFileIsReplacedByForceAlone) {
+  const Sandbox sandbox;
+  fs::copy_file("sim.h5", "kept.h5");
+  fs::permissions("kept.h5", fs::perms::owner_read | fs::perms::group_read);
+  const std::string before = sha256_of("kept.h5");
+  const Ran refused = run_program({"simulate", "scene.toml", "-o", "kept.h5", "-q"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("write-protected"), std::string::npos) << refused.err;
+  EXPECT_EQ(sha256_of("kept.h5"), before);
+  EXPECT_EQ(run_program({"simulate", "scene.toml", "-o", "kept.h5", "-q", "--force"}).code, 0);
+  EXPECT_EQ(fs::status("kept.h5").permissions(), fs::perms::owner_read | fs::perms::group_read);
+  fs::permissions("sim.h5", fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_EQ(run_program({"simulate", "scene.toml", "-o", "sim.h5", "-q"}).code, 0);
+  EXPECT_EQ(fs::status("sim.h5").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST(Outputs, ASimulationDoesNotReplaceAFilmNorAFileOfAFolderOfTwincell) {
+  const Sandbox sandbox;
+  ASSERT_EQ(run_program({"track", "frames", "--cell", "frames/CELL.toml", "-o", "film.h5", "-q"}).code, 0);
+  const std::string before = sha256_of("film.h5");
+  const Ran refused = run_program({"simulate", "scene.toml", "-o", "film.h5", "-q"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("is not a trajectory of a simulation"), std::string::npos) << refused.err;
+  EXPECT_EQ(run_program({"track", "frames", "--cell", "frames/CELL.toml", "-o", "sim.h5", "-q"}).code, 2);
+  EXPECT_EQ(sha256_of("film.h5"), before);
+  // A folder of twincell lists its files.
+  ASSERT_EQ(run_program({"render", "sim.h5", "-o", "stack", "-q"}).code, 0);
+  fs::copy_file("sim.h5", "stack/sim.h5");
+  write("stack/twincell-manifest.json", nlohmann::json({{"program", "twincell"},
+                                                        {"product", "a match"},
+                                                        {"files", {{"sim.h5", {sha256_of("stack/sim.h5")}}}}})
+                                            .dump());
+  const Ran listed = run_program({"simulate", "scene.toml", "-o", "stack/sim.h5", "-q"});
+  EXPECT_EQ(listed.code, 2);
+  EXPECT_NE(listed.err.find("belongs to the folder"), std::string::npos) << listed.err;
+  const Ran list = run_program({"analyze", "sim.h5", "-o", "stack/twincell-manifest.json", "-q", "--force"});
+  EXPECT_EQ(list.code, 2);
+}
+
 TEST(Outputs, TwoRunsDoNotShareAnOutput) {
   const Sandbox sandbox;
   // The lock of an output, as another process would keep it.

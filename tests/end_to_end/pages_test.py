@@ -27,7 +27,7 @@ PROMISES = {
         ("first-hour/CELL.png", ""), ("first-hour/cells/gamma-0.9.png", ""), ("first-hour/twins/report/report.html", ""),
         ("first-hour/twins/report/figures/boundaries.svg", ""),
         (None, "Same phase on both sides at 2 of 2 drive strengths."),
-        (None, "Onset of bouncing: Gamma 1.25"),
+        (None, "Onset of bouncing: Gamma between 0.9 and 1.6"),
         (None, "compatible"),
     ],
 }

@@ -48,6 +48,7 @@ struct H5mdReader::Impl {
   bool is_planar() const;
   void read_parameters();
   void read_conditions();
+  void check_gamma();
 };
 
 namespace {
@@ -376,13 +377,24 @@ void H5mdReader::Impl::read_conditions() {
   };
   number("n_l", info.conditions.n_l);
   number("gamma", info.conditions.gamma);
-  // Versions without drive/gravity stored Gamma alone.
-  if (info.drive && info.drive->gravity == 1 && info.conditions.gamma.value_or(0) > 0) {
-    constexpr double kRounding = 1e-9;
-    const double g = info.drive->gamma() / *info.conditions.gamma;
-    if (g > 0 && std::abs(g - 1) > kRounding) info.drive->gravity = g;
-  }
+  check_gamma();
   h5::read_text(group.get(), "start", info.conditions.start);
+}
+
+void H5mdReader::Impl::check_gamma() {
+  if (!info.drive || info.conditions.gamma.value_or(0) <= 0) return;
+  constexpr double kRounding = 1e-9;
+  const double of_drive = info.drive->gamma(), stated = *info.conditions.gamma;
+  if (!(of_drive > 0) || std::abs(of_drive / stated - 1) <= kRounding) return;
+  // Files of earlier versions lack drive/gravity if it is 1, and the first ones always.
+  if (!h5::exists(file.get(), "parameters/drive/gravity")) {
+    info.drive->gravity = of_drive / stated;
+    return;
+  }
+  const bool sine = info.drive->harmonics.empty() && !info.drive->recorded && !info.drive->ramp;
+  if (sine)
+    refuse("twincell/conditions/gamma",
+           fmt::format("is {:g}, but parameters/drive states Gamma = {:g}.", stated, of_drive));
 }
 
 H5mdReader::H5mdReader(const fs::path& path) : impl_(std::make_unique<Impl>()) {

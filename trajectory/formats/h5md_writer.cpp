@@ -50,7 +50,7 @@ struct H5mdWriter::Impl {
   std::int64_t last_step = 0;
 
   Impl(const fs::path& final_path, TrajectoryInfo i)
-      : path(final_path, Product::trajectory()), info(std::move(i)) {}
+      : path(final_path, Product::trajectory(i.source)), info(std::move(i)) {}
 
   void create();
   void create_particles();
@@ -146,7 +146,7 @@ void H5mdWriter::Impl::create_parameters() {
                             : info.drive->formula() + ", cycle begins at omega t = 0");
     h5::write_scalar(drive.get(), "amplitude", info.drive->amplitude);
     h5::write_scalar(drive.get(), "omega", info.drive->omega);
-    if (info.drive->gravity != 1) h5::write_scalar(drive.get(), "gravity", info.drive->gravity);
+    h5::write_scalar(drive.get(), "gravity", info.drive->gravity);
     if (info.drive->downward_share != 1)
       h5::write_scalar(drive.get(), "downward_share", info.drive->downward_share);
     std::vector<double> harmonics;

@@ -306,7 +306,7 @@ def test_wrapped_beads_are_unwrapped():
 def test_a_foreign_file_is_not_replaced(tmp_path, sim_file):
     thesis = tmp_path / "thesis.h5"
     thesis.write_text("mine")
-    with pytest.raises(twincell.ConfigError, match="not a trajectory made by twincell; choose another name.$"):
+    with pytest.raises(twincell.ConfigError, match="not a trajectory of a simulation made by twincell; choose another name.$"):
         twincell.Trajectory.open(sim_file).write(thesis)
     assert thesis.read_text() == "mine"
 

@@ -170,6 +170,33 @@ TEST(BedDrive, UpsideDownPicturesAndBedsAtRestContradictTheDrive) {
             std::string::npos);
 }
 
+// The plate in the picture shows amplitude and phases, not the frequency. The bed does: it falls by 1 g.
+TEST(BedDrive, AWrongFrequencyContradictsTheFallOfTheBed) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  for (const double gamma : {0.8, 0.9, 1.2, 1.6, 2.0, 3.0})
+    for (const int layers : {4, 10, 20}) {
+      const MemoryTrajectory film = seen(simulated(bed(gamma, 2, "random", layers)), 0.2, 1);
+      const auto said = [&](double frequency) {
+        TrajectoryInfo info = film.info();
+        info.drive->omega *= frequency;
+        BedSteps steps(info);
+        for (Frame frame : film.frames()) {
+          frame.time /= frequency;
+          steps.append(frame);
+        }
+        return contradiction_of_bed(steps, info);
+      };
+      EXPECT_EQ(said(1), "") << gamma << ", " << layers << " layers";
+      EXPECT_EQ(said(1.05), "") << gamma << ", " << layers << " layers";
+      // The columns of a thin bed that is thrown high do not move together, as in a gas.
+      const bool as_one = gamma < 2 || layers >= (gamma < 3 ? 10 : 20);
+      EXPECT_EQ(said(kTurn).empty(), !as_one) << gamma << ", " << layers << " layers: rad/s stated as Hz";
+      // A bed that hardly leaves its plate fits a plate of any weakness.
+      if (gamma < 1.3) continue;
+      EXPECT_NE(said(1 / kTurn), "") << gamma << ", " << layers << " layers: Hz stated as rad/s";
+    }
+}
+
 TEST(BedDrive, RigidBedIsExactWithinItsStatedError) {
   // The bed has a closed form and noise of 0.02 sigma. The errors must be small, and the differences must
   // agree with them.

@@ -268,6 +268,30 @@ TEST(Walton, SaysWhatIsUndetermined) {
   EXPECT_THROW(fit_walton({}, 0.5), InputError);
 }
 
+// A tangential spring that hardly reaches the Coulomb limit: the paper's first preset, of mu = 0.6, seems to
+// have 0.08.
+TEST(Walton, ImpactsOfNoCommonSlidingBranchLeaveFrictionOpen) {
+  std::mt19937_64 generator(44);
+  std::normal_distribution<double> normal(0, 0.01);
+  std::vector<Impact> all;
+  for (int i = 0; i < 200; ++i) {
+    const double psi = 0.1 + 0.035 * i;
+    all.push_back({.speed = 1,
+                   .restitution = 0.9 + 0.1 * normal(generator),
+                   .psi_1 = psi,
+                   .psi_2 = std::max(0.45 * psi, psi - 0.3 - 0.1 * psi) + normal(generator)});
+  }
+  const WaltonFit grows = fit_walton(all, 0.5);
+  EXPECT_NE(std::find(grows.tangential.undetermined.begin(), grows.tangential.undetermined.end(), "mu"),
+            grows.tangential.undetermined.end());
+  ASSERT_FALSE(grows.notes.empty());
+  EXPECT_NE(grows.notes.back().find("do not slide throughout"), std::string::npos) << grows.notes.back();
+  for (int trial = 0; trial < 100; ++trial) {
+    const WaltonFit f = fit_walton(impacts(0.9, 0.25, 0.4, 5, 80, 0.05, generator), 0.5);
+    EXPECT_TRUE(f.tangential.undetermined.empty()) << trial;
+  }
+}
+
 namespace {
 
 /// A gas of discs without gravity; linear dashpot with e_n = 0.9, mu = 0.2. 1/m_t = 6; the sticking ratio of

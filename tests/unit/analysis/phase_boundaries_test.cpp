@@ -35,7 +35,7 @@ TEST(Boundaries, LieBetweenTheStrongestWithoutAndTheWeakestWith) {
   ASSERT_NE(bounce, nullptr);
   EXPECT_DOUBLE_EQ(bounce->gamma().value(), 1.3);
   EXPECT_DOUBLE_EQ(bounce->half_width().value(), 0.2);
-  EXPECT_EQ(boundary_text(*bounce), "1.3 ± 0.2");
+  EXPECT_EQ(boundary_text(*bounce), "between 1.1 and 1.5");
   const PhaseBoundary* flow = find(all, Side::experiment, kFlow);
   EXPECT_DOUBLE_EQ(flow->gamma().value(), 2.0);
   EXPECT_EQ(boundary_text(*find(all, Side::simulation, kFlow)), "above 3");
@@ -55,7 +55,7 @@ TEST(Boundaries, SeedsThatDisagreeAtTheLastStrengthBracketNothing) {
   EXPECT_EQ(boundary_text(*find(first, Side::simulation, kFlow)), "below 3");
   const auto nowhere = find_boundaries({run(Side::simulation, 2, kFlow), run(Side::simulation, 2.4, kBounce),
                                         run(Side::simulation, 2.4, kFlow)});
-  EXPECT_EQ(boundary_text(*find(nowhere, Side::simulation, kFlow)), "undetermined (seeds differ)");
+  EXPECT_EQ(boundary_text(*find(nowhere, Side::simulation, kFlow)), "undetermined (runs differ)");
 }
 
 TEST(Boundaries, WhereSeedsDisagreeTheBracketReachesToTheNextThatAgree) {

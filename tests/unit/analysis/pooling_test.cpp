@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -241,6 +242,28 @@ TEST(Pooling, PartsOfOneRunAreNoRepeats) {
   } catch (const ConfigError& e) {
     EXPECT_NE(std::string(e.what()).find("the same run, of which they recorded different parts"),
               std::string::npos)
+        << e.what();
+  }
+}
+
+TEST(Pooling, RunsThatShareAFrameAreNoRepeats) {
+  const auto run = [](const std::vector<double>& heights, bool reversed) {
+    MemoryTrajectory t(bed(1.5, heights.front()).info());
+    for (const double h : heights) {
+      Frame f = bed(1.5, h).frames().front();
+      if (reversed) std::reverse(f.position.begin(), f.position.end());
+      t.append(f);
+    }
+    return t;
+  };
+  const MemoryTrajectory whole = run({0, 0.1, 0.2, 0.3}, false), later = run({0.2, 0.3, 0.4, 0.5}, true),
+                         same_start = run({0, 0.15, 0.25, 0.35}, false);
+  EXPECT_NO_THROW(require_one_condition({&whole, &same_start}));
+  try {
+    require_one_condition({&whole, &later});
+    FAIL() << "no complaint";
+  } catch (const ConfigError& e) {
+    EXPECT_NE(std::string(e.what()).find("frame 2 there and frame 0 here are equal"), std::string::npos)
         << e.what();
   }
 }

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "core/atomic_file.hpp"
+#include "core/toml_leaves.hpp"
 #include "tests/support/complaint.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -88,6 +89,14 @@ std::string repeated(const std::string& piece, int n) {
 }
 
 // At a depth of some thousands the parser would exhaust the stack.
+TEST(Config, WholeNumbersAreWrittenInDecimalDigits) {
+  const std::vector<TomlLeaf> leaves = toml_leaves("[axes]\nstart.seed = [1, 0x3C, 0b1]\nmu = 0.5\n", "axes");
+  ASSERT_EQ(leaves.size(), 2U);
+  for (const TomlLeaf& leaf : leaves)
+    EXPECT_EQ(leaf.items, leaf.path == "mu" ? std::vector<std::string>{"0.5"}
+                                            : (std::vector<std::string>{"1", "60", "1"}));
+}
+
 TEST(Config, DepthIsBounded) {
   constexpr int kMany = 50'000;
   const std::string deep = "tables and lists are nested more than 100 levels deep.";

@@ -101,6 +101,12 @@ TEST(Verdict, AStatementOfSeveralPartsIsAsGoodAsItsWorstPart) {
   EXPECT_EQ(all_of({consistent, inconclusive, pass}), inconclusive);
   EXPECT_EQ(all_of({inconclusive, fail, pass}), fail);
   EXPECT_EQ(all_of({}), absent);
+  // A statement about every case is not met by one of them.
+  EXPECT_EQ(all_of({pass, pass}, 2), pass);
+  EXPECT_EQ(all_of({pass}, 2), inconclusive);
+  EXPECT_EQ(all_of({consistent}, 2), inconclusive);
+  EXPECT_EQ(all_of({fail}, 2), fail);
+  EXPECT_EQ(all_of({}, 2), absent);
   EXPECT_EQ(best_of(fail, inconclusive), inconclusive);
   EXPECT_EQ(best_of(consistent, inconclusive), consistent);
   EXPECT_EQ(best_of(consistent, pass), pass);

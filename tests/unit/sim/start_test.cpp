@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <random>
@@ -443,6 +444,7 @@ struct Film {
   Film() { info.box.upper = Vec3(8, 1, 20); }
   Scene scene_of(const std::vector<std::string>& more = {}) {
     info.n_beads = frame.position.size();
+    std::filesystem::remove(folder / "start.h5");  // a film is not replaced by a simulation
     H5mdWriter writer(folder / "start.h5", info);
     writer.append(frame);
     writer.finish();

@@ -170,6 +170,9 @@ TEST(H5mdFile, ImpossibleConditionsAreRefused) {
   info.conditions = {.n_l = 1, .gamma = std::nan(""), .start = {}};
   expect_refusal<InputError>([&] { (void)conditions_through_file(info); }, "twincell/conditions/gamma",
                              "not negative");
+  info.conditions = {.n_l = 1, .gamma = 3.6, .start = {}};
+  expect_refusal<InputError>([&] { (void)conditions_through_file(info); }, "twincell/conditions/gamma",
+                             "parameters/drive states Gamma = 1.8");
 }
 
 TEST(H5mdFile, WhatIsWrittenIsReadBitForBit) {
