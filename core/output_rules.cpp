@@ -209,9 +209,7 @@ void replace_by_force(bool allowed) {
 }
 
 bool may_replace(const fs::path& file, const Product& product) {
-  if (is_product(file, product)) return true;
-  const std::lock_guard lock(rules().mutex);
-  return rules().force;
+  return is_product(file, product) || is_forced();
 }
 
 fs::path require_output(const fs::path& path, const Product& product) {

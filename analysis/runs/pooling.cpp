@@ -489,10 +489,8 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
   };
   std::vector<RunEnds> ends;
   std::vector<std::map<std::string, std::string>> keys, motions;
-  std::vector<Arrangements> arrangements;
   for (const TrajectorySource* t : trajectories) {
     ends.emplace_back(*t);
-    arrangements.push_back(arrangements_of(*t));
     motions.push_back(motion_keys(t->info().provenance_json));
     keys.push_back(bed_keys(t->info().provenance_json));
   }
@@ -548,9 +546,15 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
         refuse(*trajectories[k], b,
                "both contain the same run, of which they recorded different parts; another seed is needed to "
                "measure the scatter");
-      else if (const auto frames = shared_frame(arrangements[k], arrangements[i]))
+  }
+  // Last, because it reads every frame.
+  std::vector<Arrangements> arrangements;
+  for (const TrajectorySource* t : trajectories) {
+    arrangements.push_back(arrangements_of(*t));
+    for (std::size_t k = 0; k + 1 < arrangements.size(); ++k)
+      if (const auto frames = shared_frame(arrangements[k], arrangements.back()))
         refuse(
-            *trajectories[k], b,
+            *trajectories[k], *t,
             fmt::format("frame {} there and frame {} here are equal, bead for bead, so that they are parts "
                         "of one run; another seed or repeat is needed to measure the scatter",
                         frames->first, frames->second));

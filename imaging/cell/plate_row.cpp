@@ -45,25 +45,21 @@ double bar_height_px(const cv::Mat& grey, bool bright, double light, double dark
   return highest.empty() ? kNaN : value_at(highest, kPlateQuantile);
 }
 
-/// A column in which the edge of the plate is seen, and the height of the edge.
-struct ColumnEdge {
-  int x;
-  float height;
-};
-
 /// The heights without those of the stretches of columns in which something bright lies on the plate, such as
 /// the digits of a frame counter: edges that lie clearly below those of most stretches.
-std::vector<float> heights_of_plate(const std::vector<ColumnEdge>& edges, int columns) {
-  constexpr int kStretches = 8;
+/// \param at the column of each height
+std::vector<float> heights_of_plate(const std::vector<float>& edges, const std::vector<std::size_t>& at,
+                                    std::size_t columns) {
+  constexpr std::size_t kStretches = 8;
   constexpr std::size_t kMinEdges = 3;
   constexpr double kBelow_px = 4, kBelow = 0.02;  // of the width: a plate may be turned
   std::array<std::vector<float>, kStretches> stretches;
-  for (const ColumnEdge& e : edges)
-    stretches[static_cast<std::size_t>(e.x * kStretches / columns)].push_back(e.height);
+  for (std::size_t k = 0; k < edges.size(); ++k) stretches[at[k] * kStretches / columns].push_back(edges[k]);
   std::vector<float> lows;
   for (const std::vector<float>& s : stretches)
     if (s.size() >= kMinEdges) lows.push_back(static_cast<float>(value_at(s, kPlateQuantile)));
-  const double least = lows.empty() ? 0 : value_at(lows, 0.5) - std::max(kBelow_px, kBelow * columns);
+  const double least =
+      lows.empty() ? 0 : value_at(lows, 0.5) - std::max(kBelow_px, kBelow * static_cast<double>(columns));
   std::vector<float> heights;
   for (const std::vector<float>& s : stretches)
     if (s.size() < kMinEdges || value_at(s, kPlateQuantile) >= least)
@@ -100,7 +96,7 @@ double plate_height_px(const cv::Mat& grey, bool bright) {
   // Columns: distance of the first crossing from below.
   const auto columns = static_cast<std::size_t>(grey.cols);
   std::vector<float> below(columns), heights;
-  std::vector<ColumnEdge> edges;
+  std::vector<std::size_t> at;  // columns of the heights
   std::vector<std::uint8_t> open(columns, 1);
   std::size_t left = columns, no_plate = 0;
   for (int h = 0; h < grey.rows && left > 0; ++h) {
@@ -115,7 +111,7 @@ double plate_height_px(const cv::Mat& grey, bool bright) {
           ++no_plate;
         else {
           heights.push_back(static_cast<float>(h) - (v - half) / std::max(v - below[x], 1e-6F));
-          edges.push_back({static_cast<int>(x), heights.back()});
+          at.push_back(x);
         }
       }
       below[x] = v;
@@ -126,7 +122,7 @@ double plate_height_px(const cv::Mat& grey, bool bright) {
   if (heights.size() < std::max(kMinColumns, static_cast<std::size_t>(kMinShareOfColumns * grey.cols)) ||
       no_plate > columns / 10)
     return kNaN;
-  return value_at(heights_of_plate(edges, grey.cols), kPlateQuantile);
+  return value_at(heights_of_plate(heights, at, columns), kPlateQuantile);
 }
 
 }  // namespace twincell::imaging

@@ -86,7 +86,8 @@ std::vector<double> misses_of(std::span<const double> plate, double amplitude, d
   return misses;
 }
 
-/// read_plate() with the sine of any period. \param free_sine gives it; called where it is needed
+/// read_plate() with the sine of any period. \param free_sine gives it; its argument: N explains all frames,
+/// so that the period is near
 template <class FreeSineSource>
 PlateReading read(std::span<const double> plate, int frames_per_cycle, const FreeSineSource& free_sine) {
   constexpr double kMinSeenShare = 0.6;  // of the frames
@@ -107,11 +108,11 @@ PlateReading read(std::span<const double> plate, int frames_per_cycle, const Fre
   }
   std::optional<SineSlips> fit = fit_sine_with_slips(plate, frames_per_cycle);
   const bool fits = fit && moves(fit->amplitude, fit->scatter);
-  if (const std::optional<FreeSine> free = free_sine(); free && moves(free->amplitude, free->scatter)) {
+  const bool intact = fits && fit->dropped + fit->doubled == 0;
+  if (const std::optional<FreeSine> free = free_sine(intact); free && moves(free->amplitude, free->scatter)) {
     const double drift = std::abs(frames_per_cycle / free->period - 1) * static_cast<double>(plate.size());
-    if (fits && fit->dropped + fit->doubled == 0
-            ? drifts(*fit, *free, frames_per_cycle)
-            : drift > kMaxDrift && (!fits || cost(*free, plate) < cost(*fit)))
+    if (intact ? drifts(*fit, *free, frames_per_cycle)
+               : drift > kMaxDrift && (!fits || cost(*free, plate) < cost(*fit)))
       out.other = free;
   }
   if (fits) {
@@ -163,7 +164,9 @@ std::optional<PhaseTable> phases_of_uneven(std::span<const double> plate, const 
 }  // namespace
 
 PlateReading read_plate(std::span<const double> plate, int frames_per_cycle) {
-  return read(plate, frames_per_cycle, [&] { return fit_free_sine(plate); });
+  return read(plate, frames_per_cycle, [&](bool intact) {
+    return intact ? fit_free_sine(plate, frames_per_cycle) : fit_free_sine(plate);
+  });
 }
 
 std::optional<PhaseTable> phases_from_plate(std::span<const double> plate, int stated, double offset) {
@@ -173,8 +176,8 @@ std::optional<PhaseTable> phases_from_plate(std::span<const double> plate, int s
   std::optional<FreeSine> uneven = free;
   int best_n = 0;
   for (const int n : frames_per_cycle_to_try(stated, free ? free->period : 0)) {
-    PlateReading reading =
-        free ? read(plate, n, [&] { return free; }) : read_plate(plate, n);  // one search for all n
+    PlateReading reading = free ? read(plate, n, [&](bool /*intact*/) { return free; })
+                                : read_plate(plate, n);  // one search for all n
     if (stated != 0 && reading.other && std::abs(reading.other->period - stated) < 1) uneven = reading.other;
     if (!reading.fits() || (best && cost(*reading.slips) >= cost(*best->slips))) continue;
     best = std::move(reading);

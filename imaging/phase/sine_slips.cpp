@@ -204,7 +204,7 @@ std::optional<SineSlips> fit_sine_with_slips(std::span<const double> z, int fram
   return out;
 }
 
-std::optional<FreeSine> fit_free_sine(std::span<const double> all) {
+std::optional<FreeSine> fit_free_sine(std::span<const double> all, std::optional<double> near) {
   constexpr std::size_t kSearchedFrames = 2000;
   std::span<const double> z = all.first(std::min(all.size(), kSearchedFrames));
   if (std::count_if(z.begin(), z.end(), [](double v) { return std::isfinite(v); }) <
@@ -221,7 +221,11 @@ std::optional<FreeSine> fit_free_sine(std::span<const double> all) {
     }
   };
   const double whole = kTurn / static_cast<double>(z.size()), step = whole / 12;
-  search(whole, 0.999 * std::numbers::pi, step);
+  constexpr double kReach = 1.1;  // ratio to the period that is near
+  if (near)
+    search(kTurn / (*near * kReach), kTurn * kReach / *near, step);
+  else
+    search(whole, 0.999 * std::numbers::pi, step);
   constexpr double kRefinement = 30;  // ratio of the two steps of omega
   const double found = best.omega;
   search(found - step, found + step, step / kRefinement);

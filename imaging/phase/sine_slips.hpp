@@ -45,8 +45,9 @@ struct FreeSine {
 };
 /// Fits it to the first 2000 frames by a search over all periods from 2 frames to the length of the stack,
 /// then to twice as many frames each round, near the period found before.
+/// \param near period to which it is within a tenth, frames, if one is known: the search is then much shorter
 /// \returns nothing for fewer than eight heights
-std::optional<FreeSine> fit_free_sine(std::span<const double> heights);
+std::optional<FreeSine> fit_free_sine(std::span<const double> heights, std::optional<double> near = {});
 
 /// Frames per cycle to try for a plate with missing or doubled frames: the stated number, or if it is 0 the
 /// whole numbers from 0.85 to 1.3 times the apparent period, which missing frames shorten; at most 23.

@@ -119,14 +119,13 @@ Detections detect(FramesAhead& frames, const CellDescription& cell, const Tracki
                            .sigma_x_px = b.sigma_x,
                            .sigma_y_px = b.sigma_y});
         }
-        for (const Detection& d : paler_discs(found.beads, found.dropped))
-          if (const double x = d.x + region.corner().x, y = d.y + region.corner().y;
-              !region.cuts(x, y, d.radius) && in_cell({x, y}))
-            ++all.paler;
+        const auto counts = [&](const Detection& d) {
+          const double x = d.x + region.corner().x, y = d.y + region.corner().y;
+          return !region.cuts(x, y, d.radius) && in_cell({x, y});
+        };
+        for (const Detection& d : paler_discs(found.beads, found.dropped)) all.paler += counts(d) ? 1 : 0;
         for (const Detection& d : found.dropped)
-          if (const double x = d.x + region.corner().x, y = d.y + region.corner().y;
-              has_room(d, found.beads) && !region.cuts(x, y, d.radius) && in_cell({x, y}))
-            ++all.rejected;
+          all.rejected += has_room(d, found.beads) && counts(d) ? 1 : 0;
         inside += beads.size();
         all.frames.append(beads);
       },
@@ -191,8 +190,7 @@ std::string TrackedStack::rejected_doubt() const {
   if (in_frame < kMinInFrame) return {};
   return fmt::format(
       "in {:.2g} places of a frame, in which a bead has room, a candidate was left out because no disc "
-      "explains "
-      "it: if they are beads, N_l, the results and a twin lack them (twincell locate --overlay)",
+      "explains it: if they are beads, N_l, the results and a twin lack them (twincell locate --overlay)",
       in_frame);
 }
 
