@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/report/figures.hpp"
+#include "analysis/report/figure.hpp"
 #include "calibration/camera/cell_geometry.hpp"
 #include "cli/output.hpp"
 #include "imaging/cell/cell.hpp"

@@ -12,8 +12,8 @@
 #include <optional>
 
 #include "analysis/report/colours.hpp"
+#include "analysis/report/figure.hpp"
 #include "analysis/report/figure_style.hpp"
-#include "analysis/report/figures.hpp"
 #include "cli/cost_calibration.hpp"
 #include "cli/cost_gas.hpp"
 #include "cli/cost_locate.hpp"

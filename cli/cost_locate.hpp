@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "analysis/report/figures.hpp"
+#include "analysis/report/figure.hpp"
 #include "cli/output.hpp"
 
 namespace twincell::cli {

@@ -85,7 +85,11 @@ std::unique_ptr<imaging::FrameSource> open_for_locating(const std::string& stack
                                                         const imaging::LocatingRequest& request,
                                                         const imaging::LocatorOptions& locator,
                                                         const Common& common) {
-  return imaging::prepare_frames(open_stack(stack, common), stack, request, locator);
+  auto frames = open_stack(stack, common);
+  const imaging::FrameRange range = imaging::frames_of(request);
+  if (const auto n = static_cast<std::int64_t>(frames->announced()); n > 0 && range.end > n)
+    note(common, fmt::format("--frames ends before frame {}, but {} has {} frames.", range.end, stack, n));
+  return imaging::prepare_frames(std::move(frames), stack, request, locator);
 }
 
 }  // namespace twincell::cli

@@ -1,5 +1,7 @@
 // Entry point of the program: the table of verbs, and the error messages and exit codes of exceptions.
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <poll.h>
 #include <unistd.h>
 
@@ -18,6 +20,7 @@
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
 #include "cli/version.hpp"
+#include "cli/wrapped_help.hpp"
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/escape.hpp"
@@ -126,6 +129,35 @@ std::string unknown_verb(const CLI::App& program, int argc, char** argv) {
   return {};
 }
 
+/// Whether two options begin with the same word of four letters or more: --drive-freq and --drive-hz.
+bool begin_alike(const std::string& a, const std::string& b) {
+  constexpr std::size_t kMinLetters = 4, kDashes = 2;
+  const std::string first = a.substr(kDashes, a.find('-', kDashes) - kDashes);
+  return first.size() >= kMinLetters && b.substr(kDashes).starts_with(first);
+}
+
+/// What to say after an unknown option: the nearest one of the verb, those that begin alike, or the
+/// verbs that have an option of that name. \param options those of the verb
+std::string advice_on_option(const CLI::App& program, const std::string& name,
+                             const std::vector<std::string>& options) {
+  constexpr std::size_t kMostNamed = 4;
+  if (const std::string near = nearest_word(name, options); !near.empty())
+    return "; did you mean '" + near + "'?";
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : verbs_of(program))
+    if (verb->get_option_no_throw(name) != nullptr) verbs.push_back(verb->get_name());
+  if (!verbs.empty()) {
+    const bool many = verbs.size() > kMostNamed;
+    verbs.resize(std::min(verbs.size(), kMostNamed));
+    return fmt::format("; it is an option of {}{}.", fmt::join(verbs, ", "), many ? ", …" : "");
+  }
+  std::vector<std::string> alike;
+  for (const std::string& option : options)
+    if (begin_alike(name, option)) alike.push_back(option);
+  if (alike.empty() || alike.size() > kMostNamed) return "; --help shows the options.";
+  return fmt::format("; similar options: {}.", fmt::join(alike, ", "));
+}
+
 /// Complaint about an option that no verb of the command line has, with the nearest one it has; empty if
 /// there is none.
 std::string unknown_option(const CLI::App& program, int argc, char** argv) {
@@ -144,9 +176,7 @@ std::string unknown_option(const CLI::App& program, int argc, char** argv) {
     for (const CLI::Option* option : verb->get_options())
       for (const std::string& other : option->get_lnames())
         if (!option->get_group().empty()) names.push_back("--" + other);
-    const std::string near = nearest_word(name, names);
-    return "there is no option '" + name + "'" +
-           (near.empty() ? "; --help shows the options." : "; did you mean '" + near + "'?");
+    return "there is no option '" + name + "'" + advice_on_option(program, name, names);
   }
   return {};
 }
@@ -227,11 +257,11 @@ int run(int argc, char** argv) {
       "twincell");
   program.set_version_flag("--version", [] { return version_text(); });
   program.require_subcommand(0, 1);
+  program.formatter(wrapped_help());  // before the verbs, which inherit it
   program.footer(
-      "Exit codes: 0 done, 1 failed while running, 2 error in usage or configuration, 3 input unreadable or "
-      "malformed,\n"
-      "4 finished but a quality gate failed, 5 partial result that can be resumed, 130/143 stopped by a "
-      "signal.");
+      "Exit codes: 0 done, 1 failed while running, 2 error in usage or configuration, 3 input unreadable\n"
+      "or malformed, 4 finished but a quality gate failed, 5 partial result that can be resumed,\n"
+      "130/143 stopped by a signal.");
   for (const AddVerb add : kVerbs) add(program, common);
   check_numbers(program);
 

@@ -19,6 +19,7 @@
 #include "core/error.hpp"
 #include "core/escape.hpp"
 #include "core/output_rules.hpp"
+#include "core/plural.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/track/overlay.hpp"
 #include "twin/cell_draft.hpp"
@@ -35,6 +36,7 @@ struct NewOptions {
   std::optional<std::string> output;
   double diameter_px = 0;
   twin::CellAnswers answers;
+  std::vector<double> gammas;  ///< stated, in the order of the stacks
 };
 
 constexpr const char* kHead = "# Cell description, written by: ";
@@ -125,8 +127,11 @@ nlohmann::json json_of(const twin::CellSurvey& s, const twin::CellDraft& draft) 
 }
 
 /// Surveys one stack and writes its cell file and picture.
-nlohmann::json write_one(const Common& common, NewOptions& o, const fs::path& stack, const fs::path& cell,
-                         bool first, std::string& said) {
+nlohmann::json write_one(const Common& common, NewOptions& o, std::size_t index, const fs::path& cell,
+                         std::string& said) {
+  const fs::path stack = o.stacks[index];
+  const bool first = index == 0, several = o.stacks.size() > 1;
+  if (!o.gammas.empty()) o.answers.gamma = o.gammas[index];
   const fs::path picture = fs::path(cell).replace_extension(".png");
   keep_earlier(cell, common);
   require_output(cell, cell_file());
@@ -135,7 +140,7 @@ nlohmann::json write_one(const Common& common, NewOptions& o, const fs::path& st
       stack, {.diameter_px = o.diameter_px, .gamma = o.answers.gamma, .threads = common.n_threads()},
       progress_bars(common));
   if (first && ::isatty(STDIN_FILENO) != 0 && ::isatty(STDERR_FILENO) != 0 && !common.quiet && !common.json)
-    ask_for_the_rest(o.answers, survey, o.stacks.size() > 1);
+    ask_for_the_rest(o.answers, survey, several);
   const twin::CellDraft draft = twin::draft_cell(survey, o.answers);
   for (const auto* sentences : {&survey.notes, &draft.notes})
     for (const std::string& sentence : *sentences) note(common, stack.string() + ": " + sentence);
@@ -151,27 +156,42 @@ nlohmann::json write_one(const Common& common, NewOptions& o, const fs::path& st
   return document;
 }
 
-/// Notes stacks of different scales: usually the camera and the beads are the same for all.
-void note_different_scales(const Common& common, const nlohmann::json& cells) {
-  constexpr double kSame = 0.01;
-  const auto scale = [](const nlohmann::json& cell) {
-    const nlohmann::json& measured = cell["measured"];
-    const char* key = "camera.pixels_per_sigma";
-    return measured.contains(key) ? measured[key][0]["value"].get<double>() : 0.0;
+/// The stacks as words of a shell, or "STACKS..." for many.
+std::string stacks_in_words(const std::vector<std::string>& stacks) {
+  constexpr std::size_t kMostNamed = 6;
+  if (stacks.size() > kMostNamed) return "STACKS...";
+  std::string words;
+  for (const std::string& stack : stacks) words += (words.empty() ? "" : " ") + shell_word(stack);
+  return words;
+}
+
+/// Notes stacks that differ in what is usually the same for all: the camera, the beads and the cell.
+void note_different_cells(const Common& common, const nlohmann::json& cells) {
+  struct Same {
+    const char *key, *what, *unit, *remedy;
   };
-  const nlohmann::json *least = nullptr, *most = nullptr;
-  for (const nlohmann::json& cell : cells) {
-    if (scale(cell) <= 0) continue;
-    if (least == nullptr || scale(cell) < scale(*least)) least = &cell;
-    if (most == nullptr || scale(cell) > scale(*most)) most = &cell;
+  constexpr double kSame = 0.01;
+  for (const Same& same : {Same{"camera.pixels_per_sigma", "scales", "px per bead",
+                                "if camera and beads are the same, look at the circles in the pictures and "
+                                "state the bead diameter "
+                                "with --diameter"},
+                           Same{"cell.width_sigma", "distances of the side walls", "sigma",
+                                "if the cell is the same, look at the walls in the pictures"}}) {
+    const auto value = [&](const nlohmann::json& cell) {
+      const nlohmann::json& measured = cell["measured"];
+      return measured.contains(same.key) ? measured[same.key][0]["value"].get<double>() : 0.0;
+    };
+    const nlohmann::json *least = nullptr, *most = nullptr;
+    for (const nlohmann::json& cell : cells) {
+      if (value(cell) <= 0) continue;
+      if (least == nullptr || value(cell) < value(*least)) least = &cell;
+      if (most == nullptr || value(cell) > value(*most)) most = &cell;
+    }
+    if (least == nullptr || value(*most) <= (1 + kSame) * value(*least)) continue;
+    note(common, fmt::format("the {} differ: {:.2f} {} in {}, {:.2f} in {}; {}.", same.what, value(*least),
+                             same.unit, (*least)["stack"].get<std::string>(), value(*most),
+                             (*most)["stack"].get<std::string>(), same.remedy));
   }
-  if (least == nullptr || scale(*most) <= (1 + kSame) * scale(*least)) return;
-  note(common,
-       fmt::format(
-           "the scales differ: {:.2f} px per bead in {}, {:.2f} in {}; if camera and beads are the same, "
-           "look at the circles in the pictures and state the bead diameter with --diameter.",
-           scale(*least), (*least)["stack"].get<std::string>(), scale(*most),
-           (*most)["stack"].get<std::string>()));
 }
 
 void run(const Common& common, NewOptions& o) {
@@ -187,12 +207,14 @@ void run(const Common& common, NewOptions& o) {
   if (!several && fs::path(output).extension() != ".toml")
     throw ConfigError({.file = output, .key = "-o"},
                       "must end in .toml; the picture next to it ends in .png.");
-  if (several && o.answers.gamma)
+  if (!o.gammas.empty() && o.gammas.size() != o.stacks.size())
     throw ConfigError(
         {.file = {}, .key = "--drive-gamma"},
-        fmt::format("is one strength, but there are {} stacks; state --drive-hz and --sigma-mm, "
-                    "which give the Gamma of each stack, or call new for each stack.",
-                    o.stacks.size()));
+        fmt::format(
+            "states {}, but there {}; state one for each stack, in the order of the stacks "
+            "(--drive-gamma 0.9,1.6), or --drive-hz and --sigma-mm, which give the Gamma of each stack.",
+            plural(o.gammas.size(), "strength"),
+            o.stacks.size() == 1 ? "is 1 stack" : fmt::format("are {} stacks", o.stacks.size())));
   for (const std::string& stack : o.stacks) protect_input(imaging::file_of_stack(stack));
   const std::vector<std::string> names = twin::names_of_stacks({o.stacks.begin(), o.stacks.end()});
   if (several) claim_shared_folder(output, twin::cells_folder());
@@ -201,7 +223,7 @@ void run(const Common& common, NewOptions& o) {
   std::size_t open = 0;
   for (std::size_t i = 0; i < o.stacks.size(); ++i) {
     const fs::path cell = several ? fs::path(output) / (names[i] + ".toml") : fs::path(output);
-    cells.push_back(write_one(common, o, o.stacks[i], cell, i == 0, said));
+    cells.push_back(write_one(common, o, i, cell, said));
     open += cells.back()["open"].size();
   }
   // A period that is not a whole number of frames has phases of its own in every stack, which the plate
@@ -210,15 +232,13 @@ void run(const Common& common, NewOptions& o) {
     return std::any_of(cell["not_measured"].begin(), cell["not_measured"].end(),
                        [](const nlohmann::json& m) { return m["what"] == twin::kFramesPerCycle; });
   });
-  note_different_scales(common, cells);
+  note_different_cells(common, cells);
   if (open > 0)
     said += fmt::format("{} value{} still needed: look for \"FILL IN\" in the file{}.\n", open,
                         open == 1 ? " is" : "s are", several ? "s" : "");
   else
-    said +=
-        "next: twincell match " +
-        (several ? "STACKS... " + shell_word(output) : shell_word(o.stacks[0]) + " " + shell_word(output)) +
-        (whole_periods ? "" : " --phase-lock found") + " -o twin/\n";
+    said += "next: twincell match " + stacks_in_words(o.stacks) + " " + shell_word(output) +
+            (whole_periods ? "" : " --phase-lock found") + " -o twin/\n";
   nlohmann::json document = {{"cells", cells},
                              {"provenance", nlohmann::json::parse(common.provenance().to_json())}};
   print_result(common, document, said);
@@ -254,8 +274,14 @@ void add_new(CLI::App& program, Common& common) {
   answer("--cell-width-mm", o->answers.width_mm, "Distance of the side walls, mm");
   answer("--drive-hz", o->answers.frequency_hz,
          "Frequency of the shaker, Hz; default: frame rate over the period of the plate");
-  answer("--drive-gamma", o->answers.gamma,
-         "Peak acceleration of the plate over g; needs no bead diameter in mm");
+  verb.add_option(
+          "--drive-gamma", o->gammas,
+          "Peak acceleration of the plate over g; needs no bead diameter in mm. For several stacks one "
+          "each, in their order: 0.9,1.6")
+      ->type_name("FLOAT,...")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(above_zero());
   answer("--frame-rate-hz", o->answers.frame_rate_hz,
          "Frame rate of the camera, 1/s; default: that of the stack");
   verb.add_option("--gravity-m-s2", o->answers.gravity_m_s2, "Gravity, m/s^2")

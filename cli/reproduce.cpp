@@ -94,13 +94,15 @@ nlohmann::json as_json(const Reproduction& r, const fs::path& folder) {
                       {"cheaper", r.cheaper},
                       {"output", folder.string()},
                       {"runs", r.runs}};
-  for (const Target& t : r.targets)
+  for (const Target& t : r.targets) {
     j["targets"].push_back({{"name", t.name},
                             {"expected", t.expected},
                             {"measured", t.measured},
                             {"runs", t.runs},
                             {"verdict", word_of(t.verdict)},
                             {"reason", t.reason}});
+    if (!t.counted_in.empty()) j["targets"].back()["counted_in"] = t.counted_in;
+  }
   return j;
 }
 
@@ -270,6 +272,7 @@ void run_all(const ReproduceOptions& options, const Common& common) {
     nlohmann::json& counts = summary["figures"][what.name];
     for (const auto& verdict : reproduce::kVerdicts) counts[std::string(verdict.word)] = 0;
     for (const auto& t : document["targets"]) {
+      if (!t.value("counted_in", "").empty()) continue;
       nlohmann::json& n = counts[t["verdict"].get<std::string>()];
       n = n.is_null() ? 1 : n.get<int>() + 1;
     }

@@ -244,6 +244,20 @@ void run_status(const SweepOptions& options, const Common& common) {
   print_result(common, document, text + "\n");
 }
 
+/// \throws ConfigError if the output is in a folder of the sweep's points, whose files are the input of
+/// collect
+void refuse_place_among_points(const fs::path& output, const fs::path& folder) {
+  if (output == kStandardOutput) return;
+  std::error_code ec;
+  const fs::path points = fs::weakly_canonical(folder / "points", ec);
+  const fs::path place = fs::weakly_canonical(output, ec);
+  const auto [end, ignored] = std::mismatch(points.begin(), points.end(), place.begin(), place.end());
+  if (end == points.end() && !points.empty())
+    throw ConfigError({.file = output.string(), .key = "-o"},
+                      fmt::format("is among the points of the sweep in {}; name a place outside of it.",
+                                  (folder / "points").string()));
+}
+
 void run_collect(const SweepOptions& options, const Common& common) {
   const sweep::Plan plan = plan_of(options, common);
   // The place of the table follows from the name of the output. It is checked before any work, as that is.
@@ -251,6 +265,7 @@ void run_collect(const SweepOptions& options, const Common& common) {
     require_output(fs::path(options.output).replace_extension(".csv"), sweep::collected_csv_file());
   const sweep::Store store = store_of(options);
   const fs::path output = options.output.empty() ? store.folder() / "results.json" : fs::path(options.output);
+  refuse_place_among_points(output, store.folder());
   const sweep::Schedule schedule(plan, store);
   note_repeats(schedule, common);
   note_foreign(schedule, store, common);

@@ -172,6 +172,7 @@ void write_tracks(const TrackOptions& o, calibration::TrackedFilm& film, const i
   imaging::BedInCell watched(writer, info, film.cell, film.stack.height_px);
   imaging::write_trajectory(film.stack, film.plan, watched);
   writer.finish();
+  if (const std::string left_out = film.plan.in_plate_note(); !left_out.empty()) note(common, left_out);
   for (const std::string& doubt : watched.doubts()) note(common, doubt);
   if (!o.csv.empty()) write_csv(o.csv, film.stack, range);
   writing.count(static_cast<double>(film.stack.frames.size()));

@@ -1,6 +1,7 @@
 #include "core/nearest_word.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <numeric>
 #include <utility>
 
@@ -26,7 +27,10 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
   std::string nearest;
-  std::size_t smallest = 4;
+  // Half of a short word could be anything.
+  const auto letters = static_cast<std::size_t>(
+      std::ranges::count_if(word, [](unsigned char c) { return std::isalnum(c) != 0; }));
+  std::size_t smallest = std::min<std::size_t>(3, (letters + 1) / 2) + 1;
   for (const std::string& candidate : known)
     if (const std::size_t d = edit_distance(candidate, word);
         d < smallest && d < std::max(candidate.size(), word.size())) {

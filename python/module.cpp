@@ -231,6 +231,7 @@ PYBIND11_MODULE(_core, module) {
       "version", [] { return from_json(version_json()); },
       header_text("core/provenance.hpp", "version_json"));
   bind_trajectory(module);
+  bind_trajectory_from_arrays(module);
   bind_frames(module);
   bind_locating(module);
   bind_analysis(module);

@@ -134,6 +134,7 @@ std::vector<Vec3> points_of(const py::handle& points, const std::string& name);
 Box box_of(const py::object& said);
 
 void bind_trajectory(py::module_& module);
+void bind_trajectory_from_arrays(py::module_& module);  ///< after bind_trajectory
 void bind_frames(py::module_& module);
 void bind_locating(py::module_& module);
 void bind_analysis(py::module_& module);

@@ -28,6 +28,9 @@ constexpr double kSigmaMetres = 0.005, kGravity = 9.81;
 /// Largest fraction of time in contact at which the beads count as a gas.
 constexpr double kHard = 0.1;
 
+/// The start of the drive as the paper has it: beads at rest, and a base that vibrates as A sin(omega t).
+constexpr const char* kAbrupt = "drive.start = \"abrupt\"";
+
 std::vector<int> coarse_rpm() {
   return {300, 400, 500, 600, 700, 800, 900, 1000, 1200, 1500, 2000, 2500, 3000, 3500, 4000};
 }
@@ -181,26 +184,38 @@ std::size_t Gas::add(const GasCurve& curve) {
               [](const GasPoint& a, const GasPoint& b) { return a.at < b.at; });
     return runs_.size() - 1;
   }
-  std::string values;
-  for (const double value : curve.values)
-    values += fmt::format("{}{:.17g}", values.empty() ? "" : ", ", value);
   // The split integrator at n = 6.37 is at least as accurate as Verlet at n = 50 in every single collision
   // (docs/accuracy.md).
-  const std::string text = fmt::format(
-      "seed = {}\nresults = {}\n[scene]\n{}\ntime.integrator = \"split\"\ntime.steps_per_contact = 6.37\n"
-      "time.discard = {}\ntime.cycles = {}\nuntil.quantity = \"{}\"\nuntil.relative_error = {}\n"
-      "until.absolute_error = 1e-5\n[axes]\n{} = [{}]\n",
-      request_.seed, kResults, curve.scene, curve.discard, curve.cycles, curve.quantity, curve.relative_error,
-      curve.key, values);
-  runs.plan = sweep::read_plan_text(text, curve.name);
-  runs.schedule.emplace(runs.plan, store_);
+  const auto plan_of = [&](const std::vector<double>& values, int cycles) {
+    std::string list;
+    for (const double value : values) list += fmt::format("{}{:.17g}", list.empty() ? "" : ", ", value);
+    return sweep::read_plan_text(
+        fmt::format("seed = {}\nresults = {}\n[scene]\n{}\ntime.integrator = \"split\"\n"
+                    "time.steps_per_contact = 6.37\ntime.discard = {}\ntime.cycles = {}\n"
+                    "until.quantity = \"{}\"\nuntil.relative_error = {}\nuntil.absolute_error = 3e-4\n"
+                    "[axes]\n{} = [{}]\n",
+                    request_.seed, kResults, curve.scene, curve.discard, cycles, curve.quantity,
+                    curve.relative_error, curve.key, list),
+        curve.name);
+  };
+  std::vector<double> creeping, others;
+  for (const double value : curve.values)
+    (curve.key == "drive.k_m" && value < kCreeping ? creeping : others).push_back(value);
+  runs.curve.values = creeping;  // in the order of the schedules
+  runs.curve.values.insert(runs.curve.values.end(), others.begin(), others.end());
+  for (const auto& [some, cycles] :
+       {std::pair{&creeping, std::min(curve.cycles, kCyclesOfCreeping)}, std::pair{&others, curve.cycles}}) {
+    if (some->empty()) continue;
+    runs.plans.push_back(plan_of(*some, cycles));
+    runs.schedules.emplace_back(runs.plans.back(), store_);
+  }
   read(runs);
   return runs_.size() - 1;
 }
 
 std::size_t Gas::add(const GasSystem& system, const GasSize& size, const std::vector<int>& rpm) {
   GasCurve curve{.name = system.name(),
-                 .scene = fmt::format("preset = \"{}\"", system.preset()),
+                 .scene = fmt::format("preset = \"{}\"\n{}", system.preset(), kAbrupt),
                  .relative_error = size.relative_error,
                  .cycles = size.cycles};
   for (const int f : rpm) curve.values.push_back(w_of_rpm(f));
@@ -210,7 +225,8 @@ std::size_t Gas::add(const GasSystem& system, const GasSize& size, const std::ve
 bool Gas::run() {
   if (!request_.stored.empty()) return true;
   std::vector<sweep::Schedule*> schedules;
-  for (Runs& runs : runs_) schedules.push_back(&*runs.schedule);
+  for (Runs& runs : runs_)
+    for (sweep::Schedule& schedule : runs.schedules) schedules.push_back(&schedule);
   const bool complete = run_here(schedules, store_, request_.farm(), *request_.watch);
   for (Runs& runs : runs_) read(runs);
   return complete;
@@ -218,12 +234,14 @@ bool Gas::run() {
 
 void Gas::read(Runs& runs) const {
   runs.points.clear();
-  const auto& curves = runs.schedule->curves();  // one point each, because only the key varies
+  std::vector<const sweep::Curve*> curves;  // one point each, because only the key varies
+  for (const sweep::Schedule& schedule : runs.schedules)
+    for (const sweep::Curve& curve : schedule.curves()) curves.push_back(&curve);
   for (std::size_t k = 0; k < curves.size(); ++k) {
     GasPoint p;
     p.at = runs.curve.values[k];
-    p.id = curves[k].points.front().id;
-    if (const auto& text = curves[k].results.front()) {
+    p.id = curves[k]->points.front().id;
+    if (const auto& text = curves[k]->results.front()) {
       const json result = json::parse(*text);
       p.done = true;
       p.failed = result.value("failed", "");
@@ -321,10 +339,17 @@ std::string Gas::as_json(bool with_profiles) const {
 
 std::vector<std::string> Gas::conditions() const {
   int discard_least = 1000000, discard_most = 0;
+  std::size_t abrupt = 0;
   for (const Runs& runs : runs_) {
+    abrupt += runs.curve.scene.find(kAbrupt) != std::string::npos ? 1 : 0;
     discard_least = std::min(discard_least, runs.curve.discard);
     discard_most = std::max(discard_most, runs.curve.discard);
   }
+  const char* beginnings =
+      abrupt == 0 ? "with the beads moving along"
+      : abrupt == runs_.size()
+          ? "abruptly, as A sin(omega t), with the beads at rest"
+          : "abruptly, as A sin(omega t), with the beads at rest, unless a curve says otherwise";
   return {
       fmt::format("each point is one run; its seed is drawn from the master seed {} and its scene",
                   request_.seed),
@@ -333,7 +358,7 @@ std::vector<std::string> Gas::conditions() const {
       "the paper",
       "n = 6.37 steps per contact, split at contact entry and exit, where steps are taken; from W = 10 on "
       "beads fly from contact to contact and steps act only where three meet (docs/event_driven.md)",
-      fmt::format("start: random, settled at rest, then moving with the plate; {} cycles discarded",
+      fmt::format("start: random, settled at rest; the plate begins {}; {} cycles discarded", beginnings,
                   discard_least == discard_most ? fmt::format("{}", discard_most)
                                                 : fmt::format("{} to {}", discard_least, discard_most)),
       "T_z = m <w'^2> about the centre of mass of the instant, mean over beads and 20 phases a cycle",

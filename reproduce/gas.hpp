@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/report/figure.hpp"
 #include "analysis/report/figure_style.hpp"
-#include "analysis/report/figures.hpp"
 #include "reproduce/reproduction.hpp"
 #include "sweep/schedule.hpp"
 
@@ -73,6 +73,11 @@ struct GasPoint {
 /// T_bar_z below which a bed counts as solid.
 inline constexpr double kSolid = 1e-4;
 
+/// Just above W = 1 a bed may creep between two states for thousands of cycles. At lower W than this, runs
+/// end after kCyclesOfCreeping cycles at the latest.
+inline constexpr double kCreeping = 1.9;
+inline constexpr int kCyclesOfCreeping = 2000;
+
 /// Runs that differ in one key of their scene.
 struct GasCurve {
   std::string name;               ///< "2D rough", "e = 0.8"
@@ -80,7 +85,7 @@ struct GasCurve {
   std::string key = "drive.k_m";  ///< key that is varied
   std::vector<double> values = {};
   double relative_error = 0.05;  ///< required relative error of `quantity`
-  int cycles = 1000;             ///< largest number of cycles
+  int cycles = 1000;             ///< largest number of cycles; for W below kCreeping kCyclesOfCreeping
   int discard = 100;
   std::string quantity = "T_bar_z";
 };
@@ -116,8 +121,9 @@ class Gas {
  private:
   struct Runs {
     GasCurve curve;
-    sweep::Plan plan;
-    std::optional<sweep::Schedule> schedule;
+    /// Of the values below kCreeping, and of the others.
+    std::deque<sweep::Plan> plans;
+    std::deque<sweep::Schedule> schedules;
     std::vector<GasPoint> points;
   };
   void read(Runs& runs) const;
@@ -125,7 +131,7 @@ class Gas {
   const Request& request_;
   sweep::Store store_;
   std::map<std::string, std::vector<GasPoint>> stored_;  ///< by curve
-  std::deque<Runs> runs_;  // schedules refer to their plans, so elements must not move
+  std::deque<Runs> runs_;  // schedules refer to their plans, so that elements must not move
 };
 
 /// Points of a curve in a figure.

@@ -8,6 +8,7 @@
 
 #include "analysis/neighbours/neighbours.hpp"
 #include "analysis/neighbours/voronoi.hpp"
+#include "analysis/report/snapshots_figure.hpp"
 #include "reproduce/p1_packings.hpp"
 
 namespace twincell::reproduce {

@@ -53,7 +53,9 @@ std::vector<Target> targets_of(const Packings& all) {
     if (favoured.verdict == Verdict::fail)
       favoured.reason = fmt::format(
           "B grows from the side walls, which at N_l = {} are longer than the floor, from which A grows (see "
-          "Fig. 1); the paper does not say how its beads were placed",
+          "Fig. 1); beds from a dilute column (start.fraction = 0.1) favour A, and the paper does not say "
+          "how its "
+          "beads were placed",
           all.layers);
     const auto with = std::count_if(all.random.begin(), all.random.end(), [](const Packing& p) {
       return share(p, "orientation_a") > 0 && share(p, "orientation_b") > 0 &&

@@ -80,9 +80,31 @@ Slopes slopes_of(const StrengthSweep& crystal) {
 }
 
 /// Two power laws that meet, from random beds.
-std::optional<calibration::CurveFit> bend_of(const HeightSweeps& all) {
-  const auto points = points_of(all.random);
+std::optional<calibration::CurveFit> bend_of(const StrengthSweep& sweep, double above = 0,
+                                             double below = 1e300) {
+  const auto points = points_of(sweep, above, below);
   return points.size() >= 6 ? fitted("slope_break", points) : std::nullopt;
+}
+
+/// Whether the place of the bend is a property of the curve or of the window in which it is fitted: the bends
+/// without the weakest and without the strongest drives, and that of crystals, which convect later.
+std::string doubt_of_bend(const HeightSweeps& all, const calibration::CurveFit& bend) {
+  constexpr double kWeakest = 1.6, kStrongest = 16.5;  // K_m: Gamma of about 1.26 and 4
+  double least = parameter(bend, "x_b").value, most = least;
+  for (const auto& window : {bend_of(all.random, kWeakest), bend_of(all.random, 0, kStrongest)})
+    if (window) {
+      least = std::min(least, parameter(*window, "x_b").value);
+      most = std::max(most, parameter(*window, "x_b").value);
+    }
+  if (most - least <= kBreakError) return {};
+  std::string doubt = fmt::format(
+      "the bend lies between K_m {:.3g} and {:.3g}, depending on whether points below K_m {:g} or above {:g} "
+      "count: the curve bends everywhere",
+      least, most, kWeakest, kStrongest);
+  if (const auto crystal = bend_of(all.crystal); crystal && all.crystal.convection)
+    doubt += fmt::format("; crystals, which convect from K_m {:.3g} on, bend at {:.3g}",
+                         all.crystal.convection->value, parameter(*crystal, "x_b").value);
+  return doubt;
 }
 
 std::vector<Target> targets_of(const HeightSweeps& all, const std::optional<calibration::CurveFit>& bend) {
@@ -99,10 +121,16 @@ std::vector<Target> targets_of(const HeightSweeps& all, const std::optional<cali
       at.verdict = Verdict::inconclusive;
       at.reason = "one straight line does as well";
     }
+    const std::string doubt = doubt_of_bend(all, *bend);
+    if (!doubt.empty()) {
+      at.verdict = Verdict::inconclusive;
+      at.reason = doubt;
+    }
     if (all.random.convection) {
       same.measured =
           fmt::format("slope at K_m {}, convection from K_m {}", x_b.text(), all.random.convection->text());
-      same.verdict = agree(x_b, *all.random.convection, kBreakError);
+      same.verdict = doubt.empty() ? agree(x_b, *all.random.convection, kBreakError) : Verdict::inconclusive;
+      same.reason = doubt;
     }
   }
   targets.push_back(at);
@@ -180,7 +208,7 @@ analysis::Figure figure_of(const StrengthSweeps& all) {
   const double last = k_m.with_margin().high, floor = t_g.with_margin().low;
   std::size_t index = 0;
   for (const HeightSweeps& height : all.heights) {
-    const auto bend = bend_of(height);
+    const auto bend = bend_of(height.random);
     for (const StrengthSweep* l : {&height.random, &height.crystal}) {
       f.data +=
           fmt::format("# {}, N_l = {}: K_m, T_g*, low, high, convecting share\n", l->start, height.layers);
@@ -220,7 +248,7 @@ Reproduction run(const Request& request) {
 }  // namespace
 
 std::vector<Target> temperature_targets(const HeightSweeps& sweeps) {
-  return targets_of(sweeps, bend_of(sweeps));
+  return targets_of(sweeps, bend_of(sweeps.random));
 }
 
 Reproducible p1_fig4() {

@@ -357,7 +357,8 @@ Reproducible p1_step() {
           .run = run,
           .judges_stored = true,
           .on_device = true,
-          .worth = 2};
+          .worth = 2,
+          .judges_again = true};
 }
 
 }  // namespace twincell::reproduce

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 
 #include "core/table.hpp"
 #include "reproduce/gas.hpp"
@@ -12,24 +15,45 @@ namespace twincell::reproduce {
 
 namespace {
 
-const std::vector<int> kBothStarts = {500, 600, 1400};  ///< W = 1.397, 2.012, 10.95: the start may matter
+/// How a bed may begin. Just above W = 1, and where a bed can bounce as one block, the state depends on it.
+struct Beginning {
+  const char *name, *key;
+};
+constexpr Beginning kBeginnings[] = {{"abrupt", "drive.start = \"abrupt\""},
+                                     {"moving along", "drive.start = \"comoving\""},
+                                     {"boiling", "drive.schedule = [[0, 2], [20, 2], [30, 1]]"}};
+
+/// W at which all beginnings are compared: 1.397, 1.703, 2.012 and 10.96.
+std::vector<double> foot() {
+  return {w_of_rpm(500), w_of_rpm(552), w_of_rpm(600), w_of_rpm(1400)};
+}
+
+/// Between two states a bed may creep, so that more cycles take hours and change little; 5 % tell states
+/// apart.
+constexpr int kMostCyclesOfFoot = 400;
+constexpr double kErrorOfFoot = 0.05;
+
+using Beginnings = std::array<std::size_t, std::size(kBeginnings)>;  ///< a curve for each of kBeginnings
 
 struct Runs {
   std::vector<std::size_t> systems;  ///< curve of each of gas_systems()
-  std::size_t boiling = 0;           ///< curve of 2D rough at kBothStarts, started from a boiling bed
+  std::vector<Beginnings> feet;      ///< at foot(), for each of gas_systems()
 };
 
 Runs add_runs(Gas& gas, const GasSize& size) {
   Runs runs;
-  for (const GasSystem& system : gas_systems()) {
-    runs.systems.push_back(gas.add(system, size, size.rpm));
-    if (runs.systems.size() > 1) continue;
-    GasCurve boiling = gas.curve(runs.systems.front());
-    boiling.name += ", begun boiling";
-    boiling.scene += "\ndrive.schedule = [[0, 2], [20, 2], [30, 1]]";
-    boiling.values.clear();
-    for (const int rpm : kBothStarts) boiling.values.push_back(w_of_rpm(rpm));
-    runs.boiling = gas.add(boiling);
+  for (const GasSystem& system : gas_systems()) runs.systems.push_back(gas.add(system, size, size.rpm));
+  for (std::size_t k = 0; k < gas_systems().size(); ++k) {
+    Beginnings& beginnings = runs.feet.emplace_back();
+    for (std::size_t b = 0; b < beginnings.size(); ++b) {
+      GasCurve curve = gas.curve(runs.systems[k]);
+      curve.name = fmt::format("{}, begun {}", gas_systems()[k].name(), kBeginnings[b].name);
+      curve.scene = fmt::format("preset = \"{}\"\n{}", gas_systems()[k].preset(), kBeginnings[b].key);
+      curve.values = foot();
+      curve.relative_error = std::max(curve.relative_error, kErrorOfFoot);
+      curve.cycles = std::min(curve.cycles, kMostCyclesOfFoot);
+      beginnings[b] = gas.add(curve);
+    }
   }
   return runs;
 }
@@ -173,18 +197,65 @@ std::vector<Target> targets_of(const Gas& gas, const Runs& runs) {
   return targets;
 }
 
-std::string both_starts(const Gas& gas, const Runs& runs) {
-  std::string s = "  Both starts, just above W = 1 and where the bed may bounce as one block, 2D rough\n";
-  for (const GasPoint& boiling : gas.points(runs.boiling)) {
-    const GasPoint* rest = point_at(gas.points(runs.systems[0]), boiling.at);
-    const auto a = rest != nullptr ? rest->get("T_bar_z") : std::nullopt, b = boiling.get("T_bar_z");
-    if (!a || !b) continue;
-    const Verdict apart = above(*a, *b);
-    s += fmt::format(
-        "  {:>9.4g} from rest {}, from a boiling bed {}: {}\n", boiling.at, a->text(), b->text(),
-        apart == Verdict::inconclusive ? "no difference to be seen" : "the result depends on the start");
+/// "one state", or "depends on the beginning" where two values differ by more than their errors and a fifth.
+std::string states_of(const std::vector<Estimate>& all) {
+  constexpr double kApart = 1.2;
+  if (all.size() < 2) return "";
+  const auto [least, most] = std::minmax_element(
+      all.begin(), all.end(), [](const Estimate& a, const Estimate& b) { return a.value < b.value; });
+  if (most->value < kSolid) return "solid";
+  const bool apart = most->value > kApart * least->value && above(*most, *least) == Verdict::pass;
+  return apart ? "depends on the beginning" : "one state";
+}
+
+/// T_bar_z of each beginning at each W of the foot, and whether they lead to one state.
+std::string table_of_beginnings(const Gas& gas, const Runs& runs) {
+  std::string s =
+      "  T_bar_z just above W = 1, and where the bed may bounce as one block, by the beginning of the run\n";
+  for (std::size_t k = 0; k < runs.feet.size(); ++k) {
+    s += fmt::format("  {:<10} {:>9}", gas_systems()[k].name(), "W");
+    for (const Beginning& b : kBeginnings) s += fmt::format(" {:>28}", b.name);
+    s += "\n";
+    for (const GasPoint& first : gas.points(runs.feet[k][0])) {
+      s += fmt::format("  {:<10} {:>9.4g}", "", first.at);
+      std::vector<Estimate> all;
+      for (const std::size_t curve : runs.feet[k]) {
+        const GasPoint* p = point_at(gas.points(curve), first.at);
+        const auto t = p != nullptr ? p->get("T_bar_z") : std::nullopt;
+        s += fmt::format(" {:>28}", t ? t->text() : "-");
+        if (t) all.push_back(*t);
+      }
+      s += fmt::format("  {}\n", states_of(all));
+    }
   }
   return s;
+}
+
+/// The foot of one system: T_bar_z(W) by the beginning.
+analysis::Figure foot_figure(const Gas& gas, const Runs& runs, std::size_t k) {
+  constexpr double kAside = 0.015;
+  std::vector<Series> all;
+  for (std::size_t b = 0; b < std::size(kBeginnings); ++b) {
+    Series series = series_of(kBeginnings[b].name, gas.points(runs.feet[k][b]), "T_bar_z");
+    // Side by side, so that no symbol hides another.
+    for (double& w : series.x) w *= 1 + kAside * (static_cast<double>(b) - 1);
+    all.push_back(std::move(series));
+  }
+  const GasSystem& system = gas_systems()[k];
+  SeriesFigure figure{
+      .name = fmt::format("p2-fig2-foot-{}d-{}", system.dimension, system.rough ? "rough" : "smooth"),
+      .panel = 0,
+      .title = fmt::format("Foot of the curve, {}, by the beginning of the run", system.name()),
+      .x = w_axis(),
+      .y = {.label = "T_z/(m V_p^2)", .logarithmic = true},
+      .caption = fmt::format(
+          "Scaled temperature of the {} system at small W and at W = 10.96, of runs that begin abruptly from "
+          "rest (as in the paper), moving along with the plate, or boiling; drawn side by side. Where "
+          "heights "
+          "differ, the bed has more than one state.",
+          system.name()),
+      .marks = "set xtics ('1.4' 1.4, '1.7' 1.7, '2' 2, '3' 3, '5' 5, '7' 7, '11' 11)\n"};
+  return series_figure(figure, all);
 }
 
 /// The user's points, read before the runs, so that an invalid table is reported early.
@@ -252,7 +323,7 @@ Reproduction run(const Request& request) {
   r.title = "Bhateja et al. 2016, Fig. 2: scaled temperature against W in four systems";
   r.complete = gas.run();
   r.targets = targets_of(gas, runs);
-  r.table = both_starts(gas, runs) + gas.table();
+  r.table = table_of_beginnings(gas, runs) + gas.table();
   r.measured = gas.as_json();
   r.conditions = gas.conditions();
   r.runs = gas.runs_text();
@@ -260,6 +331,7 @@ Reproduction run(const Request& request) {
   if (size.rpm.size() < all_rpm().size())
     r.cheaper.push_back(fmt::format("{} of the 38 frequencies", size.rpm.size()));
   r.figures = {figure_of(gas, runs, request, own)};
+  for (std::size_t k = 0; k < runs.feet.size(); ++k) r.figures.push_back(foot_figure(gas, runs, k));
   return r;
 }
 

@@ -87,6 +87,7 @@ void add_targets(std::vector<Target>& targets, const Fitted& f, bool coefficient
                                           : Verdict::inconclusive;
     if (signs.verdict == Verdict::inconclusive) signs.reason = "so few or so noisy points do not show it";
   }
+  if (f.algebraic) curve.counted_in = "p2-fig2";  // which compares the points with the same curve
   // Table III has the coefficients of the fits that Fig. 8 shows; each fit is judged once.
   if (!coefficients) {
     targets.insert(targets.end(), {curve, close, signs});
@@ -108,7 +109,8 @@ void add_targets(std::vector<Target>& targets, const Fitted& f, bool coefficient
   };
   coefficient(0, "a", p.a, 0.25 * p.a);
   for (std::size_t k = 0; f.fit && k < f.fit->fit.names.size(); ++k)
-    if (f.fit->fit.names[k] == "b") coefficient(k, "b", p.b, 0.2);
+    // 30 % of the algebraic b is 0.2; 0.2 for the exponential one, 0.131, would include 0.
+    if (f.fit->fit.names[k] == "b") coefficient(k, "b", p.b, 0.3 * p.b);
 }
 
 std::string line_of(const Fitted& f) {

@@ -39,7 +39,8 @@ constexpr std::array<Paper, 2> kPapers = {
 /// Number of targets with each verdict.
 std::map<std::string, int> counts_of(const json& document) {
   std::map<std::string, int> counts;
-  for (const json& t : document.at("targets")) ++counts[t.at("verdict").get<std::string>()];
+  for (const json& t : document.at("targets"))
+    if (t.value("counted_in", "").empty()) ++counts[t.at("verdict").get<std::string>()];
   return counts;
 }
 
@@ -66,8 +67,12 @@ std::string papers_page(const std::vector<Document>& documents, const std::strin
       "| verdict | meaning |\n|---|---|\n";
   for (const auto& verdict : kVerdicts) s += fmt::format("| {} | {} |\n", verdict.word, verdict.help);
   s += "\nStatements about an order use the interval of the difference. A statement about a count or about "
-       "bits has no interval.\nEach target is counted once: entries that judge the targets of other figures "
-       "again, under other assumptions, are not in\nthe sum. The cost is the processor time of the runs that "
+       "bits has no interval.\nEach target is counted once. Entries that judge the targets of other figures "
+       "again, "
+       "under other assumptions, or that ask what\nthe papers do not state, are not in the sum; nor is a "
+       "single "
+       "target that another entry counts, which its verdict names.\nThe cost is the processor time of the "
+       "runs that "
        "the figure uses; \"–\" means that it was not recorded.\nFigures that share runs each state it "
        "in whole.\n\n## Summary\n\n| |";
   for (const auto& verdict : kVerdicts) s += fmt::format(" {} |", verdict.word);
@@ -95,9 +100,10 @@ std::string papers_page(const std::vector<Document>& documents, const std::strin
            "|---|---|---|---|---|---|\n";
       for (const json& t : document.at("targets")) {
         const auto text = [&](const char* key) { return cell(t.value(key, "")); };
-        s += fmt::format("| {} | {} | {} | {} | {} | {} |\n", text("name"), text("expected"),
+        const std::string counted_in = text("counted_in");
+        s += fmt::format("| {} | {} | {} | {} | {}{} | {} |\n", text("name"), text("expected"),
                          text("measured").empty() ? "–" : text("measured"), text("runs"), text("verdict"),
-                         text("reason"));
+                         counted_in.empty() ? "" : ", counted in `" + counted_in + "`", text("reason"));
       }
     }
   }

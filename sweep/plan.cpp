@@ -231,6 +231,22 @@ Plan read_plan(const fs::path& path) {
   return interpret(Config::from_file(path), path.string(), folder);
 }
 
+namespace {
+
+/// Results of the plan whose definition has changed since the first, with its number, for the identity of the
+/// points; empty if there is none.
+std::string definitions_of(const Plan& plan) {
+  std::vector<std::string> wanted = plan.results.empty() ? analysis::result_names() : plan.results;
+  if (plan.verdict) wanted.push_back(plan.verdict->result);
+  std::set<std::string> changed;
+  for (const std::string& name : wanted)
+    if (const int definition = analysis::named_result(name).definition; definition > 1)
+      changed.insert(fmt::format("{} {}", name, definition));
+  return fmt::format("{}", fmt::join(changed, ","));
+}
+
+}  // namespace
+
 Point make_point(const Plan& plan, const std::vector<std::string>& values, std::optional<double> at,
                  int replica) {
   throw_if_cancelled();  // a plan may have a million points
@@ -264,6 +280,8 @@ Point make_point(const Plan& plan, const std::vector<std::string>& values, std::
   if (plan.verdict)
     content += fmt::format("\n# verdict {} {}{}", plan.verdict->result, plan.verdict->above,
                            plan.stop_early ? ", stop early" : "");
+  if (const std::string definitions = definitions_of(plan); !definitions.empty())
+    content += "\n# definitions " + definitions;
   point.id = sha256_of_text(content).substr(0, 16);
   const sim::Plan cost = sim::make_plan(scene);
   point.work = static_cast<double>(cost.steps) *

@@ -68,6 +68,26 @@ std::string unit_of_key(const std::string& key) {
   return row == rows.end() || row->unit == "1" ? "" : row->unit;
 }
 
+/// The symbol of a key in enhanced text, as in the papers; empty for a key without one.
+std::string symbol_of_key(const std::string& key) {
+  static const std::map<std::string, std::string> symbols = {{"beads.layers", "N_l"},
+                                                             {"beads.count", "N"},
+                                                             {"contact.mu", "μ"},
+                                                             {"contact.restitution", "e_n"},
+                                                             {"contact.k_n", "k_n"},
+                                                             {"contact.k_t", "k_t"},
+                                                             {"contact.gamma_n", "γ_n"},
+                                                             {"contact.gamma_t", "γ_t"},
+
+                                                             {"drive.gamma", "Γ = A ω^2/g"},
+                                                             {"drive.k_m", "K_m = A^2 ω^2/(σ g)"},
+                                                             {"drive.omega", "ω"},
+                                                             {"drive.amplitude", "A"},
+                                                             {"drive.peak_acceleration_g", "Γ = A ω^2/g"}};
+  const auto found = symbols.find(key);
+  return found == symbols.end() ? std::string() : found->second;
+}
+
 /// Unit of a result, from the first point that states it; empty for a pure number.
 std::string unit_of_result(const json& document, const std::string& result) {
   for (const json& point : document.at("points")) {
@@ -301,7 +321,9 @@ analysis::Figure results_figure(const std::string& collected, const FigureOption
 
   const std::string y = onsets ? onset_label(document["onsets"][0]) : result;
   const auto key_label = [](const std::string& label, const std::string& key) {
-    return with_unit(analysis::gnuplot_text(label), analysis::gnuplot_text(unit_of_key(key)));
+    const std::string symbol = symbol_of_key(key), text = analysis::gnuplot_text(label);
+    return with_unit(symbol.empty() ? text : fmt::format("{} ({})", symbol, text),
+                     analysis::gnuplot_text(unit_of_key(key)));
   };
   analysis::figure_style::PlotAxis x_axis{.label = key_label(x, x)},
       y_axis{.label = onsets ? key_label(y, document["onsets"][0].value("key", ""))

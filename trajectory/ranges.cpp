@@ -37,6 +37,9 @@ void require_ranges(const TrajectoryInfo& info, const std::string& name) {
   };
   each(info.radius, "radius", kLargestRadius);
   each(info.mass, "mass", 1e300);
+  for (std::size_t i = 0; i < info.tracer.size(); ++i)
+    if (info.tracer[i] > 1)
+      refuse("tracer", fmt::format("is {} for bead {}; it must be 0 or 1.", info.tracer[i], i));
   if (info.phases_per_cycle < 0 || info.phases_per_cycle > kMaxPhases)
     refuse("parameters/phases_per_cycle",
            fmt::format("is {}; it must be between 0 and {}.", info.phases_per_cycle, kMaxPhases));
@@ -87,6 +90,20 @@ void require_order(std::span<const std::int32_t> phases, std::span<const std::in
   }
 }
 
+void require_places(const Frame& frame, std::size_t index, const std::string& name) {
+  constexpr std::size_t kMinBeads = 3;  // of two beads at one place, the reader of a start says more
+  const Vec3* first = nullptr;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < frame.position.size(); ++i) {
+    if (!frame.present(i) || !frame.position[i].allFinite()) continue;
+    if (first == nullptr) first = &frame.position[i];
+    if (frame.position[i] != *first) return;
+    ++n;
+  }
+  if (n >= kMinBeads)
+    throw InputError({name, 0, 0, fmt::format("frame {}", index)}, "all beads are at one place.");
+}
+
 void require_ranges(const Frame& frame, std::size_t index, const TrajectoryInfo& info,
                     const std::string& name) {
   constexpr std::int64_t kMaxCycles = 1'000'000'000'000;
@@ -108,8 +125,9 @@ void require_ranges(const Frame& frame, std::size_t index, const TrajectoryInfo&
     for (const double s : frame.position_sigma[i])
       if (s < 0) refuse(fmt::format("the uncertainty of bead {} is {:g}; it must not be negative.", i, s));
   for (const Vec3& t : {frame.time_mean.temperature, frame.time_mean.temperature_coarse})
-    if ((t.array() < 0).any())
-      refuse(fmt::format("a temperature is {:g}; it must not be negative.", t.minCoeff()));
+    for (const double component : t)
+      if (component < 0 || std::isinf(component))
+        refuse(fmt::format("a temperature is {:g}; it must be finite and not negative.", component));
   if (!info.columns.phase) return;
   if (frame.phase < -1 || frame.phase >= std::max(info.phases_per_cycle, 1))
     refuse(fmt::format("its phase is {}; it must be below {} phases per cycle.", frame.phase,

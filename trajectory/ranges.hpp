@@ -28,6 +28,10 @@ void require_ranges(const Frame& frame, std::size_t index, const TrajectoryInfo&
 /// this. \throws InputError naming the frame and the slot
 void require_filled_slots(const Frame& frame, std::size_t index, const std::string& name);
 
+/// Checks that three beads or more are not all at one place, as in a file whose positions were lost. \throws
+/// InputError naming the frame
+void require_places(const Frame& frame, std::size_t index, const std::string& name);
+
 /// Checks that each frame that has a phase comes after the one before it that has.
 /// \param phases, cycles [frames] \throws InputError naming both frames
 void require_order(std::span<const std::int32_t> phases, std::span<const std::int64_t> cycles,

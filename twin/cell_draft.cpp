@@ -182,8 +182,7 @@ class Draft {
 
   void phases() {
     if (!s_.drive) {
-      open("camera.frames_per_cycle", "number of frames per cycle of the shaker",
-           "not needed by track --phase-lock found, which uses the motion of the bed");
+      frames_per_cycle_of_rates();
       open("camera.first_phase", "phase of the first frame, 0 to frames_per_cycle - 1",
            "phase 0: the plate passes its mean height upwards");
       return;
@@ -197,6 +196,24 @@ class Draft {
            "of the first frame; phase 0: the plate passes its mean height upwards");
     significant("camera.phase_offset", {d.phase_offset, d.phase_offset_error},
                 "frames by which every frame is late");
+  }
+
+  /// The frames per cycle of a film that shows no plate: the frame rate over the frequency, if they stay in
+  /// step over the film.
+  void frames_per_cycle_of_rates() {
+    constexpr double kMaxDrift = 0.25;  // frames over the film
+    const auto rate = a_.frame_rate_hz ? a_.frame_rate_hz : s_.frame_rate_hz;
+    const double period = rate && a_.frequency_hz ? *rate / *a_.frequency_hz : 0, whole = std::round(period);
+    const double drift =
+        period > 0 ? std::abs(period - whole) * static_cast<double>(s_.n_frames) / period : 0;
+    if (whole >= 2 && drift <= kMaxDrift)
+      stated("camera.frames_per_cycle", fmt::format("{:.0f}", whole),
+             fmt::format("frame rate over frequency, {:.10g}/s over {:.10g} Hz, as stated", *rate,
+                         *a_.frequency_hz));
+    else
+      open("camera.frames_per_cycle", "number of frames per cycle of the shaker",
+           (period > 0 ? fmt::format("frame rate over frequency is {:.6g}, no whole number; ", period) : "") +
+               "not needed by track --phase-lock found, which uses the motion of the bed");
   }
 
   void cell() {

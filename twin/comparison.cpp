@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Limits of a report page: bead positions of all snapshots together, bytes of pictures, snapshots per run.
-constexpr std::size_t kMaxPositions = 400000, kMaxPictureBytes = 12000000, kMaxSnapshots = 20,
+constexpr std::size_t kMaxPositions = 400000, kMaxPictureBytes = 3000000, kMaxSnapshots = 20,
                       kMinSnapshots = 4;
 
 /// The trajectories of both sides, experiments first.

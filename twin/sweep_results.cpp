@@ -7,9 +7,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
+#include "analysis/runs/phase_boundaries.hpp"
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/json_view.hpp"
@@ -54,8 +56,19 @@ analysis::BedPhase phase_of(const std::optional<JsonView>& results) {
   return analysis::bed_phase(scalar("s_b"), scalar("s_c"));
 }
 
+/// Refuses results that no run has: a negative s_b or s_c.
+void require_possible(const std::optional<JsonView>& results) {
+  for (const char* name : {"s_b", "s_c"})
+    if (const auto value = value_of(results, name); value && !(value->number() >= 0))
+      value->refuse(fmt::format("is {:g}; it cannot be negative", value->number()));
+}
+
 void add_points(const JsonView& document, analysis::Comparison& comparison) {
+  std::set<std::string> ids;
   for (const JsonView& point : document.at("points").elements()) {
+    if (const auto id = point.find("id"); id && !ids.insert(id->text()).second)
+      id->refuse(fmt::format("'{}' occurs twice; each point counts once", id->text()));
+    require_possible(point.find("results"));
     const analysis::BedPhase phase = phase_of(point.find("results"));
     if (phase == analysis::BedPhase::undetermined) continue;
     const RunConditions at = sweep::conditions_from_json(conditions_of(point));
@@ -119,13 +132,27 @@ class GammaOfKey {
   std::map<std::string, std::map<double, double>> log_gamma_;  ///< by the other axes and log key
 };
 
-/// Axes of the sweep at an onset, without those that N_l and start state: "drive.omega = 2".
-std::string other_axes(const JsonView& onset) {
+/// Whether the key states how strongly the plate shakes, so that Gamma grows with it.
+bool is_strength(const std::string& key) {
+  static const std::set<std::string> keys = {"drive.gamma",
+                                             "drive.peak_acceleration_g",
+                                             "drive.k_m",
+                                             "drive.amplitude",
+                                             "drive.amplitude_mm",
+                                             "drive.peak_velocity",
+                                             "drive.peak_velocity_mm_s"};
+  return keys.contains(key);
+}
+
+/// Axes of the sweep at an onset or a point, without those that N_l and start state, and Gamma of a point:
+/// "drive.omega = 2".
+std::string other_axes(const JsonView& row, bool of_point) {
   std::string text;
-  const auto axes = onset.find("axes");
+  const auto axes = row.find("axes");
   if (!axes || !axes->value().is_object()) return text;
   for (const auto& [key, value] : axes->value().items()) {
-    if (key == "beads.layers" || key == "start.kind" || value.is_null()) continue;
+    if (key == "beads.layers" || key == "start.kind" || value.is_null() || (of_point && is_strength(key)))
+      continue;
     text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", key,
                         value.is_number()   ? fmt::format("{:g}", value.get<double>())
                         : value.is_string() ? value.get<std::string>()
@@ -165,9 +192,37 @@ std::map<std::string, int> add_onsets(const JsonView& document, analysis::Compar
                                      .above = limit("high"),
                                      .sweep = true,
                                      .fitted = limit("value"),
-                                     .axes = other_axes(onset)});
+                                     .axes = other_axes(onset, false)});
   }
   return elsewhere;
+}
+
+/// Brackets of the onsets from the points of a grid, which has no onsets of its own: for each set of the axes
+/// other than the strength, between the points without and with the phase.
+void add_brackets(const JsonView& document, analysis::Comparison& comparison) {
+  std::map<std::string, std::vector<analysis::Run>> groups;
+  for (const JsonView& point : document.at("points").elements()) {
+    const auto axes = point.find("axes");
+    if (!axes || !axes->value().is_object()) continue;
+    bool varies = false;
+    for (const auto& [key, value] : axes->value().items()) varies = varies || is_strength(key);
+    const analysis::BedPhase phase = phase_of(point.find("results"));
+    const RunConditions at = sweep::conditions_from_json(conditions_of(point));
+    if (!varies || phase == analysis::BedPhase::undetermined || !at.n_l || !at.gamma) continue;
+    analysis::Run& run = groups[other_axes(point, true)].emplace_back();
+    run.side = analysis::Side::simulation;
+    run.start = at.start;
+    run.gamma = *at.gamma;
+    run.n_l = *at.n_l;
+    run.phase = phase;
+  }
+  for (const auto& [axes, runs] : groups)
+    for (analysis::PhaseBoundary& boundary : analysis::find_boundaries(runs)) {
+      if (!boundary.below && !boundary.above) continue;
+      boundary.sweep = true;
+      boundary.axes = axes;
+      comparison.boundaries.push_back(std::move(boundary));
+    }
 }
 
 /// The collected results in a file. \throws InputError if it holds something else
@@ -189,6 +244,7 @@ std::vector<std::string> add_results(const JsonView& document, const fs::path& f
         fmt::format("{}: {} of {} {} no place in the diagram over Gamma and N_l; sweep plot draws {}.",
                     file.string(), count == 1 ? "1 onset" : fmt::format("{} onsets", count), key,
                     count == 1 ? "has" : "have", count == 1 ? "it" : "them"));
+  if (!document.has("onsets") || document.at("onsets").elements().empty()) add_brackets(document, comparison);
   if (comparison.sweep.size() + comparison.boundaries.size() == before)
     throw InputError(
         {.file = file.string()},

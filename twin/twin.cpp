@@ -177,6 +177,8 @@ std::vector<std::string> write_experiment(calibration::TrackedFilm& film, const 
   imaging::write_trajectory(film.stack, film.plan, watched);
   writer.finish();
   std::vector<std::string> doubts = film.stack.doubts(film.cell);
+  if (std::string left_out = film.plan.in_plate_note(); !left_out.empty())
+    doubts.push_back(std::move(left_out));
   for (const std::string& doubt : watched.doubts()) doubts.push_back(doubt);
   return doubts;
 }

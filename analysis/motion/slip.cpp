@@ -5,21 +5,30 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
 namespace twincell::analysis {
 namespace {
 
+/// Definition 1 took the 99th percentile of all heights for the surface, which beads thrown by strong drives
+/// raise by several sigma.
+constexpr int kDefinition = 2;
+
+constexpr NamedResult slip_result(std::string_view name, Pooling pooling) {
+  return {
+      .name = name, .pooling = pooling, .may_repeat = true, .main = name == "p_s", .definition = kDefinition};
+}
+
 constexpr NamedResult kResults[] = {
-    {.name = "p_s", .pooling = Pooling::probability, .may_repeat = true, .main = true},
-    {"slips", Pooling::sum, true},
-    {"p_s_j", Pooling::mean, true},
-    {"slip_directions", Pooling::sum, true},
-    {"slip_oblique", Pooling::mean, true},
-    {"slip_vertical", Pooling::mean, true},
-    {"slip_horizontal", Pooling::mean, true}};
+    slip_result("p_s", Pooling::probability),     slip_result("slips", Pooling::sum),
+    slip_result("p_s_j", Pooling::mean),          slip_result("slip_directions", Pooling::sum),
+    slip_result("slip_oblique", Pooling::mean),   slip_result("slip_vertical", Pooling::mean),
+    slip_result("slip_horizontal", Pooling::mean)};
 
 constexpr std::size_t kDirections = 36;
+constexpr double kColumn = 2;   ///< width of the columns in which the surface is sought, sigma
 constexpr double kWithin = 15;  ///< maximum angle to a nominal direction, degrees
 
 /// Number of slipped bonds in one period, by direction.
@@ -40,16 +49,25 @@ double between_lines(double a, double b) {
   return std::min(d, 180 - d);
 }
 
-/// Height of the free surface: 99th percentile of the heights of the beads in `frame`, so that airborne beads
-/// do not raise it.
-double free_surface(const Frame& frame) {
+/// Height of the free surface of the bed: median over vertical columns of the height of the highest bead that
+/// has `kSurfaceNeighbours`. Thrown beads have few neighbours, so they do not raise it, however many they
+/// are. Columns without such a bead do not count; absent if no column has one.
+std::optional<double> free_surface(const Frame& frame, const Neighbours& neighbours) {
+  std::map<std::pair<long, long>, double> tops;
+  for (std::size_t i = 0; i < frame.position.size(); ++i) {
+    const Vec3& r = frame.position[i];
+    if (!frame.present(i) || !r.allFinite() || neighbours.count(i) < kSurfaceNeighbours) continue;
+    const std::pair column{std::lround(std::floor(r.x() / kColumn)),
+                           std::lround(std::floor(r.y() / kColumn))};
+    const auto [top, is_new] = tops.try_emplace(column, r.z());
+    if (!is_new) top->second = std::max(top->second, r.z());
+  }
+  if (tops.empty()) return std::nullopt;
   std::vector<double> z;
-  for (std::size_t i = 0; i < frame.position.size(); ++i)
-    if (frame.present(i) && std::isfinite(frame.position[i].z())) z.push_back(frame.position[i].z());
-  if (z.empty()) return -INFINITY;
-  const auto at = static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(z.size() - 1));
-  std::nth_element(z.begin(), z.begin() + at, z.end());
-  return z[static_cast<std::size_t>(at)];
+  for (const auto& [column, top] : tops) z.push_back(top);
+  const auto middle = z.begin() + static_cast<std::ptrdiff_t>(z.size() / 2);
+  std::nth_element(z.begin(), middle, z.end());
+  return *middle;
 }
 
 class Slip : public Observable {
@@ -90,7 +108,10 @@ class Slip : public Observable {
   }
 
   void close_period(const Frame& end) {
-    const double deepest = free_surface(start_) - kSlipDepth;
+    ++periods_;
+    const std::optional<double> surface = free_surface(start_, neighbours_);
+    if (!surface) return;
+    const double deepest = *surface - kSlipDepth;
     const std::size_t n = start_.position.size();
     std::size_t eligible = 0, slipping = 0;
     slips_now_.assign(n, 0);
@@ -113,7 +134,6 @@ class Slip : public Observable {
         slips_now_[i] = 1;
       }
     }
-    ++periods_;
     if (eligible == 0) return;
     slips_ += slipping;
     trials_ += eligible;
@@ -175,8 +195,10 @@ class Slip : public Observable {
   void add_probability(std::vector<Result>& all, const std::string& source) const {
     const std::string rule = fmt::format(
         "at least {} neighbours moved relative to the bead by more than {:g} sigma in one period, neighbours "
-        "at the start of the period; beads {:g} sigma or more below the 99th percentile of heights; {}",
-        kSlipBonds, kSlipDistance, kSlipDepth, neighbour_rule_text(context_));
+        "at the start of the period; beads {:g} sigma or more below the surface of the bed (median over "
+        "columns "
+        "{:g} sigma wide of the highest bead with {} neighbours); {}",
+        kSlipBonds, kSlipDistance, kSlipDepth, kColumn, kSurfaceNeighbours, neighbour_rule_text(context_));
     Result p_s{
         .name = "p_s", .values = {fraction_.mean()}, .unit = "1", .n = trials_, .n_of = "bead-periods"};
     const auto trials = static_cast<double>(trials_);

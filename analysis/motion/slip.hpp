@@ -13,6 +13,9 @@ inline constexpr double kSlipDistance = 0.2;
 inline constexpr std::size_t kSlipBonds = 2;
 /// Beads closer than this to the free surface do not count, sigma.
 inline constexpr double kSlipDepth = 10;
+/// A bead belongs to the bed, not to the beads thrown above it, if it has this many neighbours: a bead in the
+/// top layer of a crystal has four.
+inline constexpr std::size_t kSurfaceNeighbours = 4;
 
 /// Slip between the beginnings of consecutive cycles (Fortini & Huang 2015, sec. V). Results:
 ///
@@ -32,9 +35,9 @@ inline constexpr double kSlipDepth = 10;
 /// uses the change of the bond vector, so that a slip by a whole lattice constant counts and a translation of
 /// the bed does not. A rigid rotation by more than 0.2 rad within a period would also count. The neighbours
 /// are those of the analysis's neighbour rule at the start of the period. A bead is eligible if it is at
-/// least 10 sigma below the free surface (99th percentile of the heights of the centres at the start of the
-/// period) and is seen at both ends of the period with at least two neighbours. If no bead is eligible (thin
-/// beds), the results are absent, not zero, and state the reason.
+/// least 10 sigma below the free surface (median over columns 2 sigma wide of the highest bead with four
+/// neighbours, at the start of the period) and is seen at both ends of the period with at least two
+/// neighbours. If no bead is eligible (thin beds), the results are absent, not zero, and state the reason.
 extern const ObservableEntry slip_observable;
 
 }  // namespace twincell::analysis

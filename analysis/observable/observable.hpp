@@ -182,6 +182,9 @@ struct NamedResult {
   /// Value of a sparse profile at an abscissa that a run does not have: 0 for a filling or a stress, NaN,
   /// none, for a mean.
   double elsewhere = std::numeric_limits<double>::quiet_NaN();
+  /// Number of the definition; raised by one whenever the definition changes, so that stored results of the
+  /// earlier one are not mixed with new ones.
+  int definition = 1;
 };
 
 /// One observable: its results and its factory. NAME.cpp defines NAME_observable, the list in observables.cpp

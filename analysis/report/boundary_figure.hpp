@@ -2,7 +2,7 @@
 /// \file
 /// Figure of the phase boundaries, with the points of sweeps.
 
-#include "analysis/report/figures.hpp"
+#include "analysis/report/figure.hpp"
 #include "analysis/runs/comparison.hpp"
 
 namespace twincell::analysis {

@@ -27,10 +27,11 @@ std::string real_differences(const Comparison& c) {
   constexpr std::size_t kMaxNamed = 5;
   const bool heights = heights_of(c.matches).size() > 1;
   std::vector<std::string> names;
-  std::size_t without_error = 0, without_seeds = 0;
+  std::size_t without_error = 0, without_seeds = 0, not_filmed = 0;
   for (const Difference& d : c.differences) {
     if (!d.in_errors()) ++without_error;
     if (d.is_real() && !d.seeds) ++without_seeds;
+    if (d.is_real() && !d.camera) ++not_filmed;
     if (d.is_real())
       names.push_back(fmt::format("{} at {}", d.quantity, condition_text(c.matches[d.match], heights)));
   }
@@ -44,12 +45,15 @@ std::string real_differences(const Comparison& c) {
       fmt::format("{} of the {} compared numbers really differ{}: {}{}.", n, c.differences.size(),
                   n == 1 ? "s" : "", fmt::join(names, heights ? "; " : ", "),
                   n > kMaxNamed ? fmt::format(" and {} more", n - kMaxNamed) : "");
-  // Two standard errors are exceeded by chance in 4.6 % of the cases.
-  constexpr double kByChance = 0.0455;
-  const double by_chance = kByChance * static_cast<double>(c.differences.size() - without_error);
-  if (by_chance >= 1)
-    text += fmt::format(" By chance alone, about {:.0f} of the {} with known errors would.", by_chance,
-                        c.differences.size() - without_error);
+  const std::size_t compared = c.differences.size() - without_error;
+  if (static_cast<double>(compared) * kFalseShare >= 1)
+    text += fmt::format(
+        " Among {} numbers with known errors, a difference counts from {:.2g} errors on, so that at "
+        "most about {:.0f} % of such differences are chance.",
+        compared, c.differences.front().significant, 100 * kFalseShare);
+  if (not_filmed == n)
+    text +=
+        fmt::format(" Nothing was filmed, so that camera and tracking may cause {}.", n == 1 ? "it" : "them");
   if (without_seeds > 0)
     text += fmt::format(
         " The error of {} contains no scatter between seeds, as there is one simulation of each start: other "

@@ -23,7 +23,7 @@
 
   // ---- graphs ----
   const base = () => ({font: {family: 'system-ui, "Segoe UI", Helvetica, Arial, sans-serif', size: 13, color: themed('ink')},
-                margin: {l: 58, r: 12, t: 10, b: 46}, paper_bgcolor: themed('paper'), plot_bgcolor: themed('paper'), hovermode: 'closest',
+                margin: {l: 58, r: 12, t: 32, b: 46}, paper_bgcolor: themed('paper'), plot_bgcolor: themed('paper'), hovermode: 'closest',
                 hoverlabel: {bgcolor: themed('faint'), font: {color: themed('ink')}},
                 legend: {orientation: 'h', y: -0.18, yanchor: 'top', x: 0}});
   const axis = (title, more) => Object.assign(
@@ -66,7 +66,9 @@
     const region = (phase, lower, upper) => shapes.push({type: 'path', layer: 'below', line: {width: 0}, fillcolor: phaseColour[phase], opacity: 0.16,
       path: 'M' + lower.concat([...upper].reverse()).map(p => p.join(',')).join('L') + 'Z'});
     if (bounce.length) region('co-moving', flat(y[0]), line(bounce, 1));
-    if (bounce.length && convect.length) region('bouncing', line(bounce, 2), line(convect, 1));
+    // Where an onset has no lower end, the phase below it is not known.
+    const atLeast = (limits, least) => limits.map((l, i) => [l[0], Math.max(l[1], least.length === limits.length ? least[i][2] : l[1]), l[2]]);
+    if (bounce.length && convect.length) region('bouncing', line(bounce, 2), line(atLeast(convect, bounce), 1));
     if (convect.length) region('convecting', line(convect, 2), flat(y[1]));
     return {shapes, of: onsets.length ? onsets[0].of : ''};
   }
@@ -138,7 +140,7 @@
       }
     const omegas = runs.map(r => r.omega), one = omegas.length > 0 && omegas.every(w => Math.abs(w - omegas[0]) <= 1e-3 * omegas[0]);
     const layout = {height: 480, showlegend: false, xaxis: axis('N<sub>l</sub> σ', {range: x}), yaxis: axis('Γ = A ω² / g', {range: y}), shapes: shaded.shapes,
-                    margin: {l: 58, r: one ? 58 : 12, t: 10, b: 46}};
+                    margin: {l: 58, r: one ? 58 : 12, t: 32, b: 46}};
     if (one && runs.length) {
       traces.push({x: [x[0]], y: [y[0]], yaxis: 'y2', mode: 'markers', marker: {opacity: 0}, hoverinfo: 'skip', showlegend: false});
       layout.yaxis2 = axis('K<sub>m</sub> = A² ω² / σ g', Object.assign({overlaying: 'y', side: 'right', range: y, matches: 'y', showgrid: false},

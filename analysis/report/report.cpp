@@ -9,9 +9,12 @@
 #include "analysis/observable/results.hpp"
 #include "analysis/report/boundary_figure.hpp"
 #include "analysis/report/conclusion.hpp"
-#include "analysis/report/figures.hpp"
+#include "analysis/report/figure.hpp"
+#include "analysis/report/phase_diagram_figure.hpp"
 #include "analysis/report/report_csv.hpp"
 #include "analysis/report/report_page.hpp"
+#include "analysis/report/run_figures.hpp"
+#include "analysis/report/snapshots_figure.hpp"
 #include "core/atomic_file.hpp"
 #include "core/json_text.hpp"
 
@@ -135,8 +138,8 @@ void write_report(const std::filesystem::path& folder, const Comparison& c,
 
   std::vector<Figure> figures;
   if (!c.runs.empty())
-    figures = {phase_strip_figure(c.runs), phase_diagram_figure(c.runs), thresholds_figure(c.runs),
-               s_k_figure(c.runs), s_j_figure(c.runs)};
+    figures = {phase_strip_figure(c.runs), phase_diagram_figure(c.runs, c.boundaries),
+               thresholds_figure(c.runs), s_k_figure(c.runs), s_j_figure(c.runs)};
   if (!c.boundaries.empty() || !c.sweep.empty()) figures.push_back(boundary_figure(c));
   for (std::size_t m = 0; m < c.matches.size(); ++m)
     figures.push_back(snapshots_figure(c.runs, c.matches[m], fmt::format("snapshots_{}", m + 1)));

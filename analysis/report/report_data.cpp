@@ -26,6 +26,11 @@ std::string label_of(const Frame& frame, int phases) {
   return fmt::format("cycle {}, phase {}/{}", frame.cycle, frame.phase, phases);
 }
 
+/// Media type of a picture, by its first bytes.
+std::string media_type_of(std::string_view picture) {
+  return picture.starts_with("\xff\xd8") ? "image/jpeg" : "image/png";
+}
+
 json snapshot_json(const Snapshot& snapshot, int phases, const std::string& picture) {
   const Frame& f = snapshot.frame;
   const bool locked = f.cycle >= 0 && f.phase >= 0 && phases > 0;
@@ -34,7 +39,7 @@ json snapshot_json(const Snapshot& snapshot, int phases, const std::string& pict
             {"cycle", locked ? json(f.cycle) : json(nullptr)},
             {"fraction", locked ? static_cast<double>(f.phase) / phases : 0.0},
             {"plate", number_or_null(snapshot.plate)},
-            {"picture", picture.empty() ? json(nullptr) : json(data_uri("image/png", picture))}};
+            {"picture", picture.empty() ? json(nullptr) : json(data_uri(media_type_of(picture), picture))}};
   for (const char* column : {"x", "z", "q6", "psi6", "bonds", "coordination", "structure"})
     j[column] = json::array();
   for (std::size_t i = 0; i < f.position.size(); ++i) {

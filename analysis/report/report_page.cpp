@@ -123,7 +123,9 @@ std::vector<Section> sections_of(const Comparison& c, const std::vector<Figure>&
         {"differences", "Differences",
          "<p>Experiment minus simulation. The contribution of camera and tracking is the difference between "
          "the simulation as filmed and tracked and the simulation itself; what is left is compared with its "
-         "error. A difference is real if what is left exceeds two errors and the difference between starts "
+         "error. A difference is real if what is left exceeds two errors (more among many numbers, so that "
+         "at most 5 "
+         "% of the real ones are chance) and the difference between starts "
          "with other defects. " +
              html_text(filmed_words(c)) +
              fmt::format("</p>\n<p class=\"needs-script\"><label><input type=\"checkbox\" id=\"only-real\" "

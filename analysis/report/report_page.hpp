@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/report/figures.hpp"
+#include "analysis/report/figure.hpp"
 #include "analysis/runs/comparison.hpp"
 
 namespace twincell::analysis {

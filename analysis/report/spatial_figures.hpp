@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analysis/observable/observable.hpp"
-#include "analysis/report/figures.hpp"
+#include "analysis/report/figure.hpp"
 
 namespace twincell::analysis {
 

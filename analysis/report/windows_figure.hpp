@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/report/figures.hpp"
+#include "analysis/report/figure.hpp"
 #include "analysis/runs/windows.hpp"
 
 namespace twincell::analysis {

@@ -64,10 +64,9 @@ std::map<std::string, std::string> bed_keys(const std::string& provenance_json) 
 }
 
 std::map<std::string, std::string> motion_keys(const std::string& provenance_json) {
-  constexpr std::array<std::string_view, 5> kRecording = {"time.cycles", "time.discard", "time.phases",
-                                                          "time.contacts", "time.springs"};
+  constexpr std::array<std::string_view, 2> kOfTheRun = {"time.", "until."};
   auto all = keys_of(provenance_json, [&](std::string_view key) {
-    return std::ranges::find(kRecording, key) == kRecording.end();
+    return std::ranges::none_of(kOfTheRun, [&](std::string_view table) { return key.starts_with(table); });
   });
   return all.contains("start.from") ? std::map<std::string, std::string>() : all;
 }

@@ -12,9 +12,10 @@ namespace twincell::analysis {
 /// the size of the cell, which trajectories state themselves. Empty for other provenance
 std::map<std::string, std::string> bed_keys(const std::string& provenance_json);
 
-/// All keys that determine the motion of such a run, the seed among them; left out are those that say which
-/// part of it is recorded (cycles, discard, phases, contacts, springs). Two runs with the same keys are the
-/// same run. Empty also for a start from a file, whose content the keys do not state
+/// All keys that determine the bed and its motion, the seed among them; left out are the tables `[time]` and
+/// `[until]`, which say how the run is computed and which part of it is recorded. Two runs with the same keys
+/// begin with the same bed and are not independent. Empty also for a start from a file, whose content the
+/// keys do not state
 std::map<std::string, std::string> motion_keys(const std::string& provenance_json);
 
 }  // namespace twincell::analysis

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <numbers>
 
 #include "analysis/motion/tracers.hpp"
 #include "analysis/neighbours/bond_orientation.hpp"
@@ -15,7 +17,7 @@
 namespace twincell::analysis {
 namespace {
 
-/// A difference is significant if it exceeds this many standard errors.
+/// A difference is significant if it exceeds at least this many standard errors.
 constexpr double kSignificant = 2;
 /// Minimum number of runs of one start for a reliable spread between seeds.
 constexpr std::size_t kFewSeeds = 5;
@@ -160,7 +162,7 @@ std::optional<double> Difference::in_errors() const {
 
 bool Difference::is_real() const {
   const auto t = in_errors();
-  return t && std::abs(*t) > kSignificant && !(defects && std::abs(remainder()) <= *defects);
+  return t && std::abs(*t) > significant && !(defects && std::abs(remainder()) <= *defects);
 }
 
 std::optional<double> Difference::camera_share() const {
@@ -181,7 +183,9 @@ std::string Difference::attribution() const {
   if (const auto share = camera_share())
     by_camera = *share < 1 ? fmt::format("camera and tracking cause {:.0f} % of it", 100 * *share)
                            : "camera and tracking cause all of it";
-  if (std::abs(*t) <= kSignificant) {
+  if (std::abs(*t) <= significant) {
+    if (std::abs(*t) > kSignificant)
+      return fmt::format("{:.1f} errors, no more than chance gives among so many numbers", std::abs(*t));
     if (!by_camera.empty() && size > kSignificant * *error())
       return by_camera + "; the rest is within its error";
     const std::pair<const char*, std::optional<double>> sources[] = {
@@ -228,6 +232,34 @@ std::vector<Checks::TracerLines> tracer_lines(const TrajectorySource& trajectory
   return lines;
 }
 
+namespace {
+
+/// The number of errors above which a difference is real, for all differences together.
+double significant_errors(const std::vector<Difference>& differences) {
+  std::vector<double> errors;
+  for (const Difference& d : differences)
+    if (const auto t = d.in_errors()) errors.push_back(std::abs(*t));
+  std::sort(errors.begin(), errors.end(), std::greater<>());
+  const auto m = static_cast<double>(errors.size());
+  double limit = 0;  // the smallest t that counts
+  for (std::size_t k = errors.size(); k-- > 0 && limit == 0;)
+    if (std::erfc(errors[k] / std::numbers::sqrt2) <= kFalseShare * static_cast<double>(k + 1) / m)
+      limit = std::nextafter(errors[k], 0.0);
+  // None counts: the limit is above the largest.
+  if (limit == 0 && !errors.empty()) limit = errors.front();
+  return std::max(kSignificant, limit);
+}
+
+/// Whether an earlier number of the same match has the same values on both sides.
+bool repeats(const std::vector<Difference>& earlier, const Difference& d) {
+  return std::any_of(earlier.begin(), earlier.end(), [&](const Difference& e) {
+    return e.match == d.match && e.unit == d.unit && e.experiment.value == d.experiment.value &&
+           e.simulation.value == d.simulation.value && e.experiment.value != e.simulation.value;
+  });
+}
+
+}  // namespace
+
 std::vector<Difference> find_differences(const std::vector<Run>& runs, const std::vector<Match>& matches,
                                          const Checks& checks) {
   std::vector<Difference> differences;
@@ -264,9 +296,11 @@ std::vector<Difference> find_differences(const std::vector<Run>& runs, const std
         d.without_error = Side::experiment;
       else if (experiment->error && !other_error && !d.seeds)
         d.without_error = Side::simulation;
-      differences.push_back(std::move(d));
+      if (!repeats(differences, d)) differences.push_back(std::move(d));
     }
   }
+  const double significant = significant_errors(differences);
+  for (Difference& d : differences) d.significant = significant;
   return differences;
 }
 

@@ -40,6 +40,7 @@ struct Difference {
   std::size_t seed_runs = 0;          ///< simulations of that start
   std::optional<double> tracers;      ///< standard deviation of E - S over three lines of tracers
   std::optional<double> defects;  ///< largest difference between the means of simulations of different starts
+  double significant = 2;  ///< number of errors above which it is real, set by find_differences for all
 
   [[nodiscard]] double difference() const { return experiment.value - simulation.value; }
   /// E - F, or E - S if nothing was filmed.
@@ -53,7 +54,7 @@ struct Difference {
   [[nodiscard]] std::optional<double> error() const;
   /// remainder / error; absent without an error, and if one side has none.
   [[nodiscard]] std::optional<double> in_errors() const;
-  /// Whether the remainder exceeds two errors and the difference between starts with other defects.
+  /// Whether the remainder exceeds `significant` errors and the difference between starts with other defects.
   [[nodiscard]] bool is_real() const;
   /// The share of the difference that camera and tracking cause, if it is above one half.
   [[nodiscard]] std::optional<double> camera_share() const;
@@ -83,7 +84,15 @@ struct Checks {
 std::vector<Checks::TracerLines> tracer_lines(const TrajectorySource& trajectory, std::size_t run,
                                               const AnalysisOptions& options);
 
-/// The differences of every match that has both sides, for every scalar that both sides have.
+/// Expected share of numbers that are called different although they are not.
+inline constexpr double kFalseShare = 0.05;
+
+/// The differences of every match that has both sides, for every scalar that both sides have. A number that
+/// repeats another one of its match on both sides (s_b_variance, where s_b is it) is left out. Of many
+/// numbers some exceed two errors by chance, so that the limit `significant` is that of Benjamini & Hochberg
+/// (J. R. Stat. Soc. B 57, 289 (1995)): of m numbers with known errors, with two-sided probabilities p_1 <=
+/// p_2 … of a normal law, those up to the largest k with p_k <= kFalseShare k/m are real; at least two
+/// errors.
 std::vector<Difference> find_differences(const std::vector<Run>& runs, const std::vector<Match>& matches,
                                          const Checks& checks = {});
 

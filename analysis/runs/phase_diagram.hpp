@@ -33,7 +33,7 @@ struct PictureFrame {
 struct Show {
   std::vector<Snapshot> snapshots;
   std::vector<std::string>
-      pictures;  ///< PNG of each snapshot, empty string if not kept; or no entries at all
+      pictures;  ///< JPEG or PNG of each snapshot, empty string if not kept; or no entries at all
   std::optional<PictureFrame> camera;
 };
 

@@ -544,8 +544,9 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
       else if (q.source == "simulation" && trajectories[k]->info().source == "simulation" &&
                !motions[i].empty() && motions[k] == motions[i])
         refuse(*trajectories[k], b,
-               "both contain the same run, of which they recorded different parts; another seed is needed to "
-               "measure the scatter");
+               "both begin with the same bed, and differ at most in the tables [time] and [until]; another "
+               "seed is "
+               "needed to measure the scatter");
   }
   // Last, because it reads every frame.
   std::vector<Arrangements> arrangements;

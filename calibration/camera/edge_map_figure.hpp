@@ -2,7 +2,7 @@
 /// \file
 /// Figure of the edge residuals.
 
-#include "analysis/report/figures.hpp"
+#include "analysis/report/figure.hpp"
 #include "calibration/camera/cell_geometry.hpp"
 
 namespace twincell::calibration {

@@ -2,7 +2,7 @@
 /// \file
 /// Figure of the distribution of bead diameters.
 
-#include "analysis/report/figures.hpp"
+#include "analysis/report/figure.hpp"
 #include "calibration/camera/size_statistics.hpp"
 
 namespace twincell::calibration {

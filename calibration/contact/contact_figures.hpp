@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/report/figures.hpp"
+#include "analysis/report/figure.hpp"
 #include "calibration/contact/bounce.hpp"
 #include "calibration/contact/collisions.hpp"
 #include "calibration/contact/inference.hpp"

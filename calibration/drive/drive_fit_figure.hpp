@@ -2,7 +2,7 @@
 /// \file
 /// Figure of the plate's heights folded onto one cycle, with the fit and its residuals.
 
-#include "analysis/report/figures.hpp"
+#include "analysis/report/figure.hpp"
 #include "calibration/drive/drive_fit.hpp"
 
 namespace twincell::calibration {

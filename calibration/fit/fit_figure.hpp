@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/report/figures.hpp"
+#include "analysis/report/figure.hpp"
 #include "calibration/fit/curve_fit.hpp"
 
 namespace twincell::calibration {

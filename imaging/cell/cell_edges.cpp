@@ -157,14 +157,16 @@ Surface light_inside(const Prepared& image, const cv::Mat1f& share, const cv::Ma
 }
 
 /// Light from the walls themselves, from the border to 6 px before the edges, in a bar from a third of its
-/// width to two thirds. Under front light the walls are not equally bright.
-Surface light_of_walls(const Prepared& image, const std::vector<Line>& lines) {
+/// width to two thirds. Under front light the walls are not equally bright. A line that begins at a bead
+/// beside the wall reaches into the bead, whose pixels do not count. \param share light past the beads
+Surface light_of_walls(const Prepared& image, const std::vector<Line>& lines, const cv::Mat1f& share) {
   const cv::Mat1f& d = image.darkness;
   cv::Mat1b wall(d.size(), uchar{0});
   double sum = 0, n = 0;
   for (const Line& line : lines)
     for (int i = line.own; i < line.end; ++i) {
       const cv::Point at = pixel_from(line.from, d.size(), line.number, i);
+      if (share(at) < kMinTransmission) continue;
       wall(at) = 1;
       sum += (1 - static_cast<double>(d(at))) * image.light.dot(surface_basis(at.x, at.y, d.size()));
       ++n;
@@ -338,7 +340,7 @@ CellEdges find_cell_edges(const cv::Mat& picture, bool bright, double diameter_p
   if (std::any_of(lines.begin(), lines.end(), [](const Line& line) { return line.wall > 0; }))
     for (int kind = 0; kind < 2; ++kind)
       std::erase_if(parts[kind], [&](const Line& line) { return kind_of(line) != kind; });
-  const Surface walls[2] = {light_of_walls(image, parts[0]), light_of_walls(image, parts[1])};
+  const Surface walls[2] = {light_of_walls(image, parts[0], share), light_of_walls(image, parts[1], share)};
   const bool black_is_clipped = clipped_black(d, lines);
 
   // Windows: pixels around the step of a line, scaled so that the wall is 0 and the background is 1.

@@ -15,7 +15,7 @@ namespace twincell::imaging {
 /// \throws InputError as FrameSource
 std::array<int, 2> size_of_frames(FrameSource& stack);
 
-/// The bytes of an 8-bit PNG for each of `numbers` (frame numbers from 0, ascending); empty for a number
+/// The bytes of an 8-bit JPEG for each of `numbers` (frame numbers from 0, ascending); empty for a number
 /// beyond the end of the stack. Frames of more than 8 bits are scaled by the largest value of the first
 /// selected frame, so that 10- and 12-bit frames are not black. A frame whose longer side exceeds `longest`
 /// px is reduced by an integer factor; each new pixel is the mean of the pixels it covers. Rotation and

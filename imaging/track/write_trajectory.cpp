@@ -1,10 +1,14 @@
 #include "imaging/track/write_trajectory.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/json_text.hpp"
+#include "core/plural.hpp"
+#include "imaging/track/beneath_plate.hpp"
 
 namespace twincell::imaging {
 
@@ -20,11 +24,16 @@ TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell
   const double scale = cell.pixels_per_sigma.value_or(diameter_px);
   plan.pixel_frame = cell.pixel_frame({stack.width_px, stack.height_px}, scale,
                                       cell.origin.value_or(PixelPoint{-0.5, stack.height_px - 0.5}));
+  const std::vector<char> in_plate = beneath_plate(stack, cell, plan.pixel_frame);
   TrajectoryInfo& info = plan.info;
   plan.slot_of_track.assign(stack.tracks.size(), -1);
   for (std::size_t t = 0; t < stack.tracks.size(); ++t) {
     const TrackSummary& track = stack.tracks[t];
     if (track.seen < shortest) continue;
+    if (in_plate[t] != 0) {
+      ++plan.in_plate;
+      continue;
+    }
     plan.slot_of_track[t] = static_cast<std::int64_t>(info.n_beads++);
     info.radius.push_back(track.radius_px / scale);
     info.tracer.push_back(track.is_tracer() ? 1 : 0);
@@ -46,6 +55,12 @@ TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell
   info.source = "experiment";
   info.tracking_json = tracking_json(stack, plan, cell);
   return plan;
+}
+
+std::string TrackPlan::in_plate_note() const {
+  if (in_plate == 0) return {};
+  return fmt::format("{} inside the plate {} left out: text or marks, not beads.", plural(in_plate, "track"),
+                     in_plate == 1 ? "is" : "are");
 }
 
 std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, const CellDescription& cell) {

@@ -15,14 +15,17 @@ namespace twincell::imaging {
 /// Metadata and bead slots of a trajectory made from a stack. Lengths are in sigma; sigma is
 /// cell.pixels_per_sigma or, if that is unknown, the located diameter. The origin is the cell's or, if that
 /// is unknown, the lower left corner of the picture. `slot_of_track[t]` is the slot of track t, or -1 for a
-/// track with fewer than `shortest` frames.
+/// track with fewer than `shortest` frames or in the plate.
 struct TrackPlan {
   TrajectoryInfo info;
   PixelFrame pixel_frame;
   std::vector<std::int64_t> slot_of_track;
+  std::size_t in_plate = 0;  ///< tracks without a slot because they lie in the plate (beneath_plate.hpp)
+  /// A sentence on them; empty if there are none.
+  [[nodiscard]] std::string in_plate_note() const;
 };
 /// Plans the trajectory of a tracked stack: its metadata, the map from px to sigma, and the slots of the
-/// tracks. Pure. \param diameter_px located diameter, px \param shortest fewest frames of a track that gets a
+/// tracks. \param diameter_px located diameter, px \param shortest fewest frames of a track that gets a
 /// slot
 TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell, double diameter_px,
                           int shortest);

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "sim/laws/cell_laws.hpp"
+#include "sim/laws/tangential/none.hpp"
 #include "sim/scene/recorded_drive.hpp"
 
 namespace twincell::sim {
@@ -41,6 +42,24 @@ void warn_of_missing_friction(const Plan& plan, std::vector<std::string>& warnin
     warnings.push_back(fmt::format("the tangential law {}: no contact has friction, whatever mu is.", why));
 }
 
+/// Contact keys that the scene's file states and a value makes void: the law reads them, but nothing changes
+/// with them. They are no error, because a sweep over mu may begin at 0.
+void warn_of_void_values(const Scene& s, const Plan& plan, std::vector<std::string>& warnings) {
+  if (!s.source) return;
+  const ConfigSection contact = s.source->section("contact");
+  const auto is_own = [&](const char* key) {
+    return contact.has(key) && !contact.where(key).file.starts_with("preset ") &&
+           contact.where(key).file != s.calibration.string();
+  };
+  const auto warn = [&](const char* key, const std::string& why) {
+    if (is_own(key)) warnings.push_back(fmt::format("contact.{} has no effect: {}.", key, why));
+  };
+  if (s.contact.tangential != NoTangential::kWord && !plan.rotation)
+    for (const char* key : {"k_t", "gamma_t", "c_t", "c_t_over_c_n"}) warn(key, "mu is 0 for all contacts");
+  else if (contact.has("restitution") && contact.number("restitution") == 1.0)
+    warn("c_t_over_c_n", "with restitution = 1 there is no normal dashpot to take a multiple of");
+}
+
 void warn_of_steps(const Scene& s, const Plan& plan, std::vector<std::string>& warnings) {
   constexpr double kManySteps = 2e6;
   if (s.steps_per_contact < kFewSteps)
@@ -63,6 +82,7 @@ std::vector<std::string> warnings_of(const Scene& s, const Plan& plan) {
   for (const std::string& doubt : warnings_of_record(s.drive)) warnings.push_back(doubt);
   warn_of_harmonics(s.drive, warnings);
   warn_of_missing_friction(plan, warnings);
+  warn_of_void_values(s, plan, warnings);
   if (s.contact.rolling != "none" && !plan.rotation)
     warnings.emplace_back(
         "beads do not turn without friction (contact.mu = 0), so that contact.rolling has no effect.");

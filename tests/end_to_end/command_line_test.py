@@ -40,6 +40,13 @@ def test_help():
         assert run("help", *path).stdout == run(*path, "--help").stdout, path
 
 
+def test_width_of_help():
+    for path in [[], *verbs()]:
+        for line in run(*path, "--help").stdout.splitlines():
+            is_code = line.startswith(("Usage: ", "  twincell ", "  -"))  # commands, and options with their values
+            assert len(line) <= 100 or is_code, f"{path}: {line}"
+
+
 def test_version():
     lines = run("--version").stdout.splitlines()
     assert re.fullmatch(r"twincell \d+\.\d+\.\d+ \(.+\)", lines[0]), lines
@@ -54,6 +61,8 @@ def test_misspelled_words():
         ("track", "x", "--diametr=3"): "there is no option '--diametr'; did you mean '--diameter'?",
         ("simulate", "--quite"): "there is no option '--quite'; did you mean '--quiet'?",
         ("locate", "x", "--zzzzzzzz"): "there is no option '--zzzzzzzz'; --help shows the options.",
+        ("match", "x", "--drive-freq", "5"): "there is no option '--drive-freq'; similar options: --drive-hz.",
+        ("simulate", "x", "--roi", "1,2,3,4"): "there is no option '--roi'; it is an option of locate, track, match.",
     }.items():
         assert run(*words, code=2).stderr == f"twincell: {sentence}\n", words
 

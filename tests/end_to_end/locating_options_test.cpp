@@ -159,6 +159,16 @@ TEST(LocatingOptions, BadOnesAreRefusedInASentence) {
   }
 }
 
+TEST(LocatingOptions, ARangeBeyondTheStackIsNoted) {
+  const TemporaryFolder folder;
+  for (const auto& [frames, noted] : {std::pair{"38:50", true}, std::pair{"38:40", false}}) {
+    const Ran ran = run_program({"locate", kDemo, "-o", folder / "x.csv", "--force", "--diameter", "12",
+                                 "--dark", "--frames", frames});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(ran.err.find("--frames ends before frame 50, but") != std::string::npos, noted) << ran.err;
+  }
+}
+
 TEST(LocatingOptions, AStretchedPictureIsNoMotion) {
   // A bed at rest, filmed through a lens that blurs along x only. One frame cannot tell this from motion.
   const TemporaryFolder folder;

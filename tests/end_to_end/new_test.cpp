@@ -161,6 +161,20 @@ TEST(New, SeveralStacksGetACellEachInOneFolder) {
   // 2 mm and 11.15 Hz are omega = 1.0003 /t0: Gamma is A omega^2.
   EXPECT_NEAR(imaging::read_cell(folder / "cells/copy-of-gamma-0.9.toml").drive()->gamma(), 0.9, 0.003);
   EXPECT_NEAR(imaging::read_cell(folder / "cells/copy-of-gamma-1.6.toml").drive()->gamma(), 1.6, 0.003);
+  // One Gamma for each stack.
+  const Ran strengths = run_program({"new", a, b, "-o", folder / "by-gamma", "--drive-gamma", "0.9,1.6"});
+  ASSERT_EQ(strengths.code, 0) << strengths.err;
+  EXPECT_NE(strengths.out.find("next: twincell match " + a.string() + " " + b.string()), std::string::npos)
+      << strengths.out;
+  EXPECT_NEAR(imaging::read_cell(folder / "by-gamma/copy-of-gamma-0.9.toml").drive()->gamma(), 0.9, 1e-9);
+  EXPECT_NEAR(imaging::read_cell(folder / "by-gamma/copy-of-gamma-1.6.toml").drive()->gamma(), 1.6, 1e-9);
+  const Ran one = run_program({"new", a, b, "-o", folder / "no", "--drive-gamma", "0.9"});
+  EXPECT_EQ(one.code, 2);
+  EXPECT_NE(
+      one.err.find("--drive-gamma: states 1 strength, but there are 2 stacks; state one for each stack"),
+      std::string::npos)
+      << one.err;
+  EXPECT_FALSE(fs::exists(folder / "no"));
 }
 
 TEST(New, OneFrameGivesBeadsWallsAndSaysThatTheMotionIsMissing) {
@@ -171,6 +185,60 @@ TEST(New, OneFrameGivesBeadsWallsAndSaysThatTheMotionIsMissing) {
   EXPECT_TRUE(d["measured"].contains("cell.width_sigma"));
   EXPECT_NE(bytes_of(cell).find("frames_per_cycle = \"FILL IN"), std::string::npos) << bytes_of(cell);
   EXPECT_NE(bytes_of(cell).find("origin_px = \"FILL IN"), std::string::npos);
+}
+
+// One camera and one cell give one scale and one width; a stack that was enlarged, or whose walls are
+// elsewhere, is noted.
+TEST(New, StacksThatDifferInScaleOrWidthAreNoted) {
+  const TemporaryFolder folder;
+  const fs::path a = copy_of(folder, "gamma-0.9", 22),
+                 b = copy_of(folder, "gamma-1.6", 22, [](const cv::Mat&frame, int) {
+                   cv::Mat larger;
+                   cv::resize(frame, larger, {}, 1.1, 1.1, cv::INTER_CUBIC);
+                   return larger;
+                 });
+  const std::string scales = "the scales differ: 12.00 px per bead in ",
+                    widths = "the distances of the side walls";
+  const Ran ran = run_program({"new", a, b, "-o", folder / "cells", "--drive-gamma", "0.9,1.6"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(ran.err.find(scales), std::string::npos) << ran.err;
+  EXPECT_EQ(ran.err.find(widths), std::string::npos) << "in bead diameters the cell is the same\n" << ran.err;
+  // Six columns more in the middle of the picture: the walls are half a bead further apart.
+  const TemporaryFolder other;
+  const fs::path c = copy_of(other, "gamma-1.6", 22, [](const cv::Mat& frame, int) {
+    const int middle = frame.cols / 2;
+    cv::Mat wider;
+    cv::hconcat(std::vector<cv::Mat>{frame.colRange(0, middle), cv::repeat(frame.col(middle), 1, 6),
+                                     frame.colRange(middle, frame.cols)},
+                wider);
+    return wider;
+  });
+  const Ran walls = run_program({"new", a, c, "-o", folder / "walls", "--drive-gamma", "0.9,1.6"});
+  ASSERT_EQ(walls.code, 0) << walls.err;
+  EXPECT_NE(walls.err.find(widths), std::string::npos) << walls.err;
+  EXPECT_EQ(walls.err.find(scales), std::string::npos) << walls.err;
+}
+
+// A film without a plate, whose rate and frequency are stated.
+TEST(New, FrameRateAndFrequencyGiveTheFramesPerCycle) {
+  const TemporaryFolder folder;
+  const fs::path stack = copy_of(folder, "gamma-0.9", 40, [](const cv::Mat& frame, int) {
+    return frame(cv::Rect(0, 0, frame.cols, 150)).clone();  // above the plate
+  });
+  const auto frames_per_cycle = [&](const char* rate) {
+    const fs::path cell = folder / "CELL.toml";
+    const Ran ran = run_program({"new", stack, "-o", cell, "--frame-rate-hz", rate, "--drive-hz", "10",
+                                 "--sigma-mm", "2", "--force"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    const std::string text = bytes_of(cell);
+    const std::size_t at = text.find("frames_per_cycle = ");
+    return at == std::string::npos ? std::string() : text.substr(at, text.find('\n', at) - at);
+  };
+  EXPECT_TRUE(frames_per_cycle("200").starts_with("frames_per_cycle = 20 ")) << frames_per_cycle("200");
+  EXPECT_TRUE(frames_per_cycle("200.5").starts_with("frames_per_cycle = 20 "));  // 0.1 frames in 40
+  const std::string uneven = frames_per_cycle("175.2");
+  EXPECT_TRUE(uneven.starts_with("frames_per_cycle = \"FILL IN")) << uneven;
+  EXPECT_NE(uneven.find("is 17.52, no whole number"), std::string::npos) << uneven;
 }
 
 TEST(New, AFrameOfAnotherSizeEndsTheStackThere) {

@@ -130,6 +130,13 @@ beads.count = [12, 60]
 TEST_F(Sweeps, CompareDrawsTheDiagramOfASweepAlone) {
   ASSERT_EQ(run(grid_, at("one")).code, kDone);
   (void)collected(grid_, at("one"));
+  // The files of the points are its input, whatever --force says.
+  for (const std::string place : {"one/points/new.json", "one/points/../points/new.json"}) {
+    const Ran among =
+        run_program({"sweep", "collect", grid_, "--folder", at("one"), "-o", at(place), "--force"});
+    EXPECT_EQ(among.code, 2) << among.out;
+    EXPECT_NE(among.err.find("is among the points of the sweep in"), std::string::npos) << among.err;
+  }
   const Ran ran = run_program({"compare", "--sweep", at("one.json"), "-o", at("report")});
   ASSERT_EQ(ran.code, kDone) << ran.err;
   EXPECT_NE(ran.out.find("points of a sweep"), std::string::npos) << ran.out;

@@ -1,5 +1,6 @@
 // A bouncing and a rearranging cell: simulated, filmed and tracked as a user would; the simulation gives the
 // true positions.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -346,4 +347,37 @@ TEST(Track, RefusesBadPhaseLocks) {
     EXPECT_EQ(ran.code, code) << way << ": " << ran.err;
     EXPECT_FALSE(std::filesystem::exists(folder / "x.h5"));
   }
+}
+
+// A camera that writes digits into the picture: where the plate is dark, the inside of a 0 is a dark disc in
+// a bright ring.
+TEST(Track, DigitsInADarkPlateAreNoBeads) {
+  namespace fs = std::filesystem;
+  const TemporaryFolder folder;
+  const fs::path demo = fs::path(TWINCELL_SOURCE_DIR) / "data_samples/demo/gamma-1.6",
+                 stack = folder / "frames";
+  fs::create_directory(stack);
+  constexpr int kFrames = 60, kCycle = 20;
+  for (int f = 0; f < kFrames; ++f) {
+    const std::string name = fmt::format("frame_{:05}.png", f);
+    cv::Mat frame = cv::imread((demo / name).string(), cv::IMREAD_GRAYSCALE);
+    // The plate's edge is at row 230.8 - 19.2 sin(2 pi f/20): here it is above the digit by 7 px or more.
+    if (const int phase = f % kCycle; phase >= 3 && phase <= 7) {
+      cv::circle(frame, {60, 231}, 8, cv::Scalar(200), cv::FILLED, cv::LINE_AA);
+      cv::circle(frame, {60, 231}, 6, cv::Scalar(5), cv::FILLED, cv::LINE_AA);
+    }
+    cv::imwrite((stack / name).string(), frame);
+  }
+  const Ran ran =
+      run_program({"track", stack, "--cell", demo / "CELL.toml", "-o", folder / "exp.h5", "--json"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto said = nlohmann::json::parse(ran.out);
+  const int digits = said["tracks"].get<int>() - said["slots"].get<int>();
+  EXPECT_GE(digits, 3);  // one or more in each cycle
+  EXPECT_NE(
+      ran.err.find(fmt::format("{} tracks inside the plate are left out: text or marks, not beads.", digits)),
+      std::string::npos)
+      << ran.err;
+  EXPECT_EQ(ran.err.find("beneath the plate"), std::string::npos) << ran.err;
+  EXPECT_EQ(said["slots"], 100);
 }

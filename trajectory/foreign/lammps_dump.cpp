@@ -35,6 +35,21 @@ struct ColumnPlaces {
   std::array<int, 3> velocity{kNoColumn, kNoColumn, kNoColumn}, spin{kNoColumn, kNoColumn, kNoColumn};
 };
 
+/// Unit of length of LAMMPS's `units` of that name; empty for lj, whose lengths are those of the scene, and
+/// for a name that LAMMPS does not have.
+std::string length_unit_of(const std::string& units) {
+  constexpr std::array<std::pair<std::string_view, const char*>, 7> kUnits = {{{"si", "m"},
+                                                                               {"cgs", "cm"},
+                                                                               {"micro", "micrometres"},
+                                                                               {"nano", "nm"},
+                                                                               {"real", "Angstrom"},
+                                                                               {"metal", "Angstrom"},
+                                                                               {"electron", "Bohr radii"}}};
+  for (const auto& [name, unit] : kUnits)
+    if (units == name) return unit;
+  return {};
+}
+
 /// Columns and ids may be in any order. Required are `id` and per axis one of xu, xsu, x, xs (s: scaled by
 /// the box, u: unwrapped); optional are vx …, omegax …, radius or diameter, mass, type, ix ….
 class DumpReader final : public ForeignReader {
@@ -60,6 +75,7 @@ class DumpReader final : public ForeignReader {
       const std::string section = line_.substr(6);
       if (section == "UNITS") {
         need_line("the units");
+        length_unit_ = length_unit_of(line_.substr(0, line_.find_last_not_of(" \t\r") + 1));
       } else if (section == "TIMESTEP") {
         need_line("the step");
         s.line = in_.number();
@@ -91,6 +107,7 @@ class DumpReader final : public ForeignReader {
     return false;
   }
 
+  [[nodiscard]] std::string length_unit() const override { return length_unit_; }
   [[nodiscard]] const ForeignColumns& columns() const override { return has_; }
   [[nodiscard]] std::int64_t size() const override { return in_.size(); }
   [[nodiscard]] std::int64_t done() const override { return in_.done(); }
@@ -160,6 +177,8 @@ class DumpReader final : public ForeignReader {
     columns_.type = place("type");
     columns_.mass = place("mass");
     columns_.radius = place("radius");
+    if (columns_.radius != kNoColumn && place("diameter") != kNoColumn)
+      fail("the columns 'radius' and 'diameter' both state the size of a bead; dump one of them.");
     if (columns_.radius == kNoColumn) {
       columns_.radius = place("diameter");
       columns_.is_diameter = true;
@@ -220,7 +239,7 @@ class DumpReader final : public ForeignReader {
 
   LineReader in_;
   std::string& line_;
-  std::string header_;
+  std::string header_, length_unit_;
   std::vector<std::string_view> words_;
   ColumnPlaces columns_;
   ForeignColumns has_;

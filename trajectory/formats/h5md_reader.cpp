@@ -33,6 +33,8 @@ struct H5mdReader::Impl {
   [[noreturn]] void refuse(const std::string& key, const std::string& complaint) const {
     throw InputError({path.string(), 0, 0, key}, complaint);
   }
+  /// Reads the number `group`/`name`, if it exists. \throws InputError if it is no number
+  bool read_number(const std::string& group, const std::string& name, double& value) const;
   h5::Series force, moment, rim_speed;
   ContactListReader contacts, contact_forces;
   std::optional<ForeignRows> foreign;  ///< of another program
@@ -49,6 +51,7 @@ struct H5mdReader::Impl {
   void read_parameters();
   void read_conditions();
   void check_gamma();
+  void require_rising_time() const;
 };
 
 namespace {
@@ -91,6 +94,13 @@ std::string H5mdReader::Impl::particle_group() const {
   return std::string("particles/") + name;
 }
 
+bool H5mdReader::Impl::read_number(const std::string& group, const std::string& name, double& value) const {
+  const std::string key = group + "/" + name;
+  if (!h5::exists(file.get(), key)) return false;
+  if (!h5::read_scalar(file.get(), key, value)) refuse(key, "must be a single number.");
+  return true;
+}
+
 void H5mdReader::Impl::open() {
   h5::quiet();
   std::error_code ec;
@@ -114,6 +124,7 @@ void H5mdReader::Impl::open() {
                     path.string());
   read_parameters();
   require_ranges(info, path.string());
+  if (!foreign) require_rising_time();
   if (info.columns.phase && !foreign)
     require_order(h5::read_dataset<std::int32_t>(file.get(), "observables/drive_phase/value"),
                   h5::read_dataset<std::int64_t>(file.get(), "observables/cycle/value"), path.string());
@@ -176,6 +187,8 @@ void H5mdReader::Impl::open_columns(const std::string& group) {
   // Constants: one entry per bead.
   auto per_bead = [&]<class T>(const char* name, std::vector<T>& out) {
     out = h5::read_dataset<T>(g.get(), name);
+    if (out.empty() && info.n_beads > 0 && h5::exists(g.get(), name))
+      refuse(group + "/" + name, "must be one number for each bead.");
     if (!out.empty() && out.size() != info.n_beads)
       refuse(group + "/" + name, fmt::format("{} entries for {} beads.", out.size(), info.n_beads));
   };
@@ -301,6 +314,8 @@ void H5mdReader::Impl::read_parameters() {
   }
   if (h5::exists(file.get(), "parameters/drive")) {
     const h5::Handle group = open_object(file.get(), "parameters/drive");
+    if (H5Iget_type(group.get()) != H5I_GROUP)
+      refuse("parameters/drive", "must be a group with the numbers amplitude and omega.");
     Drive drive;
     const auto axis = h5::read_text_attribute(group.get(), "axis");
     if (!axis.empty() && !axis.front().empty()) {
@@ -308,8 +323,8 @@ void H5mdReader::Impl::read_parameters() {
       if (k == std::string::npos) refuse("parameters/drive@axis", "must be x, y or z.");
       drive.axis = static_cast<Axis>(k);
     }
-    if (h5::read_scalar(group.get(), "amplitude", drive.amplitude) &&
-        h5::read_scalar(group.get(), "omega", drive.omega)) {
+    if (read_number("parameters/drive", "amplitude", drive.amplitude) &&
+        read_number("parameters/drive", "omega", drive.omega)) {
       if (h5::exists(group.get(), "harmonics")) {
         const auto pairs = h5::read_dataset<double>(group.get(), "harmonics");
         if (pairs.empty() || pairs.size() % 2 != 0)
@@ -318,23 +333,18 @@ void H5mdReader::Impl::read_parameters() {
       }
       if (h5::exists(group.get(), "recorded"))
         drive.recorded = read_recorded(group.get(), {path.string(), 0, 0, "parameters/drive/recorded"});
-      if (h5::exists(group.get(), "gravity")) {
-        if (!h5::read_scalar(group.get(), "gravity", drive.gravity) ||
-            !(drive.gravity > 0 && std::isfinite(drive.gravity)))
-          refuse("parameters/drive/gravity", "must be a positive number.");
-      }
-      if (h5::exists(group.get(), "downward_share")) {
-        if (!h5::read_scalar(group.get(), "downward_share", drive.downward_share) ||
-            !(std::abs(drive.downward_share) <= 1))
-          refuse("parameters/drive/downward_share", "must be a number from -1 to 1.");
-      }
+      if (read_number("parameters/drive", "gravity", drive.gravity) &&
+          !(drive.gravity > 0 && std::isfinite(drive.gravity)))
+        refuse("parameters/drive/gravity", "must be a positive number.");
+      if (read_number("parameters/drive", "downward_share", drive.downward_share) &&
+          !(std::abs(drive.downward_share) <= 1))
+        refuse("parameters/drive/downward_share", "must be a number from -1 to 1.");
       read_drive_motion(group.get(), drive, {path.string(), 0, 0, "parameters/drive"});
       info.drive = drive;
     }
   }
   double value = 0;
-  if (h5::exists(file.get(), "parameters/phases_per_cycle") &&
-      h5::read_scalar(file.get(), "parameters/phases_per_cycle", value))
+  if (read_number("parameters", "phases_per_cycle", value))
     info.phases_per_cycle =
         value >= 0 && value <= 2e9 && value == std::floor(value) ? static_cast<int>(value) : -1;
   else if (info.columns.phase) {
@@ -345,13 +355,10 @@ void H5mdReader::Impl::read_parameters() {
       info.phases_per_cycle = std::max(info.phases_per_cycle, std::min(k, 2'000'000'000) + 1);
     }
   }
-  if (h5::exists(file.get(), "parameters/samples_per_cycle") &&
-      h5::read_scalar(file.get(), "parameters/samples_per_cycle", value))
+  if (read_number("parameters", "samples_per_cycle", value))
     info.samples_per_cycle = value >= 0 && value <= 2e9 ? static_cast<int>(value) : 0;
   auto scale = [&](const char* name, std::optional<double>& out) {
-    if (h5::exists(file.get(), std::string("parameters/scale/") + name) &&
-        h5::read_scalar(file.get(), std::string("parameters/scale/") + name, value))
-      out = value;
+    if (read_number("parameters/scale", name, value)) out = value;
   };
   scale("sigma_m", info.scale.sigma_m);
   scale("gravity_m_s2", info.scale.gravity_m_s2);
@@ -369,7 +376,7 @@ void H5mdReader::Impl::read_conditions() {
   const h5::Handle group = open_object(file.get(), "twincell/conditions");
   const auto number = [&](const char* name, std::optional<double>& out) {
     double value = 0;
-    if (!h5::exists(group.get(), name) || !h5::read_scalar(group.get(), name, value)) return;
+    if (!read_number("twincell/conditions", name, value)) return;
     if (!std::isfinite(value) || value < 0)
       refuse(std::string("twincell/conditions/") + name,
              fmt::format("is {:g}; it must be finite and not negative.", value));
@@ -395,6 +402,22 @@ void H5mdReader::Impl::check_gamma() {
   if (sine)
     refuse("twincell/conditions/gamma",
            fmt::format("is {:g}, but parameters/drive states Gamma = {:g}.", stated, of_drive));
+}
+
+/// Refuses frames whose steps do not rise, or whose times fall.
+void H5mdReader::Impl::require_rising_time() const {
+  const std::string group = particle_group() + "/position/";
+  const auto steps = h5::read_dataset<std::int64_t>(file.get(), group + "step");
+  for (std::size_t f = 1; f < steps.size(); ++f)
+    if (steps[f] <= steps[f - 1])
+      refuse(group + "step", fmt::format("{} of frame {} does not come after {} of the frame before.",
+                                         steps[f], f, steps[f - 1]));
+  const auto times = h5::read_dataset<double>(file.get(), group + "time");
+  for (std::size_t f = 0; f < times.size(); ++f)
+    if (!std::isfinite(times[f]) || (f > 0 && times[f] < times[f - 1]))
+      refuse(group + "time",
+             fmt::format("{:g} of frame {} is not finite, or before the time of the frame before.", times[f],
+                         f));
 }
 
 H5mdReader::H5mdReader(const fs::path& path) : impl_(std::make_unique<Impl>()) {
@@ -462,6 +485,7 @@ void H5mdReader::read(std::size_t index, Frame& frame) const {
     if (r.foreign) r.foreign->restore(index, frame);
     require_ranges(frame, index, r.info, r.path.string());
     if (!r.foreign) require_filled_slots(frame, index, r.path.string());
+    require_places(frame, index, r.path.string());
   } catch (const RunError& e) {
     r.refuse(fmt::format("frame {}", index), e.what());
   }

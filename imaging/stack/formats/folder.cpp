@@ -37,9 +37,11 @@ std::unique_ptr<FrameSource> open_picture(const fs::path& file) {
 
 class Folder final : public FrameSource {
  public:
-  Folder(std::vector<fs::path> files, std::size_t other_files) : files_(std::move(files)) {
+  Folder(std::vector<fs::path> files, std::size_t other_files, const std::vector<std::string>& notes)
+      : files_(std::move(files)) {
     open(0);
     info_ = source_->info();
+    info_.notes.insert(info_.notes.begin(), notes.begin(), notes.end());
     info_.format = fmt::format("{} files, the first: {}", files_.size(), info_.format);
     info_.other_files = other_files;
     std::vector<std::string> names;
@@ -76,6 +78,19 @@ class Folder final : public FrameSource {
   SizeGuard guard_;
   StackInfo info_;
 };
+
+/// The note on pictures that are no frames of the other `frames` pictures' series.
+std::string left_out(const std::vector<std::string>& names, std::size_t frames) {
+  constexpr std::size_t kMaxNamed = 3;
+  const std::size_t more = names.size() - std::min(names.size(), kMaxNamed);
+  const std::vector<std::string> named(names.begin(), names.end() - static_cast<std::ptrdiff_t>(more));
+  return fmt::format(
+      "{}{} {} left out, because the name does not belong to the series of the other {} pictures; name a "
+      "frame "
+      "like them.",
+      fmt::join(named, ", "), more > 0 ? fmt::format(" and {} more", more) : "",
+      names.size() == 1 ? "is" : "are", frames);
+}
 
 /// "; its folder frames does", for a folder above that of the pictures.
 std::string folders_with_pictures(const fs::path& folder) {
@@ -132,9 +147,15 @@ std::unique_ptr<FrameSource> open_folder(const fs::path& folder) {
                                                stack));
   std::vector<std::string> names;
   for (const fs::path& file : files) names.push_back(file.filename().string());
+  const std::vector<std::string> outside = outside_the_series(names);
+  std::erase_if(names,
+                [&](const std::string& name) { return std::ranges::find(outside, name) != outside.end(); });
   sort_as_frames(names);
-  for (std::size_t i = 0; i < files.size(); ++i) files[i] = folder / names[i];
-  return std::make_unique<Folder>(std::move(files), others);
+  files.clear();
+  for (const std::string& name : names) files.push_back(folder / name);
+  std::vector<std::string> notes;
+  if (!outside.empty()) notes.push_back(left_out(outside, names.size()));
+  return std::make_unique<Folder>(std::move(files), others, notes);
 }
 
 }  // namespace twincell::imaging::frames

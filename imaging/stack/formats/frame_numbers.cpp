@@ -126,6 +126,29 @@ void sort_as_frames(std::vector<std::string>& names) {
   });
 }
 
+std::vector<std::string> outside_the_series(const std::vector<std::string>& names) {
+  constexpr std::size_t kMinSeries = 8;
+  constexpr double kMinShare = 0.9;
+  const auto series = series_of(names);
+  const auto largest = std::ranges::max_element(series, {}, [](const auto& s) { return s.second.size(); });
+  if (largest == series.end() || largest->second.size() < kMinSeries ||
+      static_cast<double>(largest->second.size()) < kMinShare * static_cast<double>(names.size()))
+    return {};
+  const std::string& prefix = largest->first;
+  const std::string root = prefix.substr(0, prefix.find_last_not_of(" _-.(") + 1);
+  std::set<std::string> inside;
+  for (const auto& [name, pictures] : series)
+    if (pictures.size() > 1)
+      for (const Numbered& picture : pictures) inside.insert(picture.name);
+  std::vector<std::string> outside;
+  for (const std::string& name : names) {
+    const std::string stem = std::filesystem::path(name).stem().string();
+    const bool continued = !root.empty() && (stem == root || prefix.starts_with(stem));
+    if (!inside.contains(name) && !continued) outside.push_back(name);
+  }
+  return outside;
+}
+
 std::vector<std::string> notes_on_names(const std::vector<std::string>& names) {
   constexpr std::size_t kMaxNamed = 3;
   constexpr double kMinEvenShare = 0.75;  // of the steps between numbers

@@ -13,6 +13,11 @@ namespace twincell::imaging::frames {
 /// number.
 void sort_as_frames(std::vector<std::string>& names);
 
+/// Names that do not belong to the frames, such as background.png or overlay.png beside frame_0001.png …: one
+/// series has at least eight pictures and nine tenths of all, and the name is alone in its own series, or
+/// without a number. A name that the series continues (stack.tif before stack_1.tif) belongs to it.
+std::vector<std::string> outside_the_series(const std::vector<std::string>& names);
+
 /// Sentences for the user. The number of a picture is the last run of digits in its name without the
 /// extension; what precedes it names the series.
 ///

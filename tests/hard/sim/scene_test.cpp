@@ -679,6 +679,30 @@ TEST(DriveOfAScene, Recorded) {
   EXPECT_LT(fall, 2.3);
 }
 
+// Keys that the law reads and a value makes void are named, unless a preset states them.
+TEST(Scene, KeysWithoutEffectAreWarnedOf) {
+  const auto warned = [](const std::vector<std::string>& assignments, const std::string& sentence) {
+    return std::ranges::count(make_plan(good(assignments)).warnings, sentence);
+  };
+  const std::string spring = "contact.tangential=\"spring\"", k_t = "contact.k_t=2e4";
+  const std::string sentence = "contact.k_t has no effect: mu is 0 for all contacts.";
+  EXPECT_EQ(warned({spring, k_t, "contact.mu=0"}, sentence), 1);
+  EXPECT_EQ(warned({spring, k_t, "contact.mu=0.1"}, sentence), 0);
+  EXPECT_EQ(warned({spring, k_t, "contact.mu=0", "contact.bottom.mu=0.3"}, sentence), 0);
+  const std::string dashpot = "contact.tangential=\"dashpot\"", ratio = "contact.c_t_over_c_n=0.5";
+  const std::string undamped =
+      "contact.c_t_over_c_n has no effect: with restitution = 1 there is no normal dashpot to take a "
+      "multiple "
+      "of.";
+  EXPECT_EQ(warned({dashpot, ratio, "contact.mu=0.3", "contact.restitution=1.0"}, undamped), 1);
+  EXPECT_EQ(warned({dashpot, ratio, "contact.mu=0.3", "contact.restitution=0.99"}, undamped), 0);
+  const Scene paper = read_scene_text(
+      "preset = \"fortini-huang-2015\"\nbeads.count = 100\n"
+      "drive.gamma = 1.2\ncontact.mu = 0\n",
+      "preset");
+  EXPECT_TRUE(make_plan(paper).warnings.empty()) << make_plan(paper).warnings.front();
+}
+
 // Harmonics are relative to the first: 10 % is 0.1.
 TEST(DriveOfAScene, HarmonicsInPercentAreWarnedOf) {
   const auto warnings = [](const char* harmonics) {

@@ -198,7 +198,8 @@ TEST(H5mdRanges, FramesThatCannotBeAreRefused) {
       {"slot 0 is empty but has a position", [](Frame& f) { f.id[0] = -7; }},
       {"the id 1 occurs twice", [](Frame& f) { f.id[0] = 1; }},
       {"the uncertainty of bead 1 is -1", [](Frame& f) { f.position_sigma[1].x() = -1; }},
-      {"a temperature is -5", [](Frame& f) { f.time_mean.temperature.z() = -5; }}};
+      {"a temperature is -5", [](Frame& f) { f.time_mean.temperature.z() = -5; }},
+      {"a temperature is inf", [](Frame& f) { f.time_mean.temperature_coarse.x() = HUGE_VAL; }}};
   for (const auto& [what, spoil] : faults) {
     put(spoil);
     const Ran valid = run_program({"validate", file}), used = run_program({"analyze", file, "-q"});
@@ -210,6 +211,104 @@ TEST(H5mdRanges, FramesThatCannotBeAreRefused) {
   for (const std::int64_t cycle : {0, -1}) {
     put([](Frame&) {}, cycle);
     expect_refused(file, "which does not come after phase 4 of cycle 0 of frame 0");
+  }
+}
+
+// A number that is text, or a group that is a number, is not the same as an absent one.
+TEST(H5mdRanges, DataOfAnotherTypeAreRefused) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "t.h5";
+  const auto as_text = [](const char* name) {
+    return [name](hid_t group) {
+      ASSERT_GE(H5Ldelete(group, name, H5P_DEFAULT), 0);
+      h5::write_text(group, name, "0.5");
+    };
+  };
+  spoil(file, "parameters/drive", as_text("omega"));
+  expect_refused(file, "parameters/drive/omega: must be a single number");
+  spoil(file, "parameters/drive", as_text("gravity"));
+  expect_refused(file, "parameters/drive/gravity: must be a single number");
+  spoil(file, "parameters", as_text("drive"));
+  expect_refused(file, "parameters/drive: must be a group");
+  spoil(file, "parameters", as_text("phases_per_cycle"));
+  expect_refused(file, "parameters/phases_per_cycle: must be a single number");
+  for (const std::string column : {"radius", "mass"}) {
+    spoil(file, "particles/trajectory", as_text(column.c_str()));
+    EXPECT_EQ(run_program({"validate", file}).code, 3);
+    const Ran ran = run_program({"analyze", file});
+    EXPECT_EQ(ran.code, 3);
+    EXPECT_NE(ran.err.find("particles/trajectory/" + column + ": must be one number for each bead"),
+              std::string::npos)
+        << ran.err;
+  }
+  spoil(file, "particles/trajectory", [](hid_t group) {
+    const std::uint8_t nine[] = {0, 9};
+    if (h5::exists(group, "tracer")) {
+      ASSERT_GE(H5Ldelete(group, "tracer", H5P_DEFAULT), 0);
+    }
+    h5::write_dataset(group, "tracer", nine, {2});
+  });
+  expect_refused(file, "tracer: is 9 for bead 1; it must be 0 or 1");
+}
+
+TEST(H5mdRanges, PositionsThatWereLostAreRefused) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "t.h5";
+  TrajectoryInfo info = sound();
+  info.n_beads = 3;
+  info.radius = info.mass = {0.5, 0.5, 0.5};
+  for (const double x : {1.0, 0.0}) {
+    H5mdWriter writer(file, info);
+    Frame frame;
+    frame.position = {Vec3(0, 0, 0), Vec3(x, 0, 0), Vec3(2 * x, 0, 0)};
+    frame.phase = 0;
+    frame.cycle = 0;
+    writer.append(frame);
+    writer.finish();
+    if (x > 0)
+      EXPECT_EQ(run_program({"validate", file}).code, 0);
+    else
+      expect_refused(file, "frame 0: all beads are at one place");
+  }
+}
+
+TEST(H5mdRanges, StepsRiseAndTimesDoNotFall) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "t.h5";
+  const auto put = [&](std::int64_t step, double time) {
+    H5mdWriter writer(file, sound());
+    Frame frame;
+    frame.position = {Vec3(1, 0, 1), Vec3(3, 0, 1)};
+    frame.step = 5;
+    frame.time = 1;
+    frame.phase = 0;
+    frame.cycle = 0;
+    writer.append(frame);
+    frame.step = step;
+    frame.time = time;
+    frame.cycle = 1;
+    writer.append(frame);
+    writer.finish();
+  };
+  put(6, 1);
+  EXPECT_EQ(run_program({"validate", file}).code, 0);
+  put(6, 0.9);
+  expect_refused(file, "0.9 of frame 1 is not finite, or before the time of the frame before");
+  put(6, std::nan(""));
+  expect_refused(file, "of frame 1 is not finite");
+  put(6, 2);
+  {
+    const h5::Handle id = h5::own(H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "opening");
+    const h5::Handle steps =
+        h5::own(H5Dopen2(id.get(), "particles/trajectory/position/step", H5P_DEFAULT), "opening the steps");
+    const std::int64_t same[] = {5, 5};
+    ASSERT_GE(H5Dwrite(steps.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, same), 0);
+  }
+  for (const char* verb : {"info", "analyze"}) {
+    const Ran ran = run_program({verb, file});
+    EXPECT_EQ(ran.code, 3);
+    EXPECT_NE(ran.err.find("5 of frame 1 does not come after 5 of the frame before"), std::string::npos)
+        << ran.err;
   }
 }
 

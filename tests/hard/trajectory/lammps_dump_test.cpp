@@ -9,6 +9,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "tests/support/program.hpp"
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "trajectory/foreign/foreign_trajectory.hpp"
@@ -177,6 +178,22 @@ TEST_F(Dump, TimeMayStandInTheDump) {
             0U);
 }
 
+// LAMMPS states its units on request (dump_modify units yes). Lengths in metres are no bead diameters.
+TEST_F(Dump, UnitsMayStandInTheDump) {
+  const std::string frame = frame_text(3, "ff ff pp", "id x y", {"1 1 1"});
+  for (const auto& [units, length] : {std::pair{"lj", ""}, {"si", "m"}, {"cgs", "cm"}, {"nano", "nm"}}) {
+    put_file(file(), fmt::format("ITEM: UNITS\n{}\n", units) + frame);
+    EXPECT_EQ(ForeignTrajectory(file(), foreign_format("lammps-dump", ""), reduced()).length_unit(), length)
+        << units;
+  }
+  const Ran ran = run_program(
+      {"import", file(), "-o", file().string() + ".h5", "--format", "lammps-dump", "--timestep", "0.01"});
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_NE(ran.err.find("the lengths of the file are in nm, so the bead diameter in nm is needed"),
+            std::string::npos)
+      << ran.err;
+}
+
 TEST_F(Dump, MalformedOnesAreRefusedByLine) {
   const std::string good = frame_text(0, "ff ff pp", "id x y", {"1 1 1", "2 2 1"});
   ASSERT_EQ(refusal(good), "accepted");
@@ -203,6 +220,8 @@ TEST_F(Dump, MalformedOnesAreRefusedByLine) {
   EXPECT_EQ(refusal(with("id x y", "id x vy")),
             "d:9: there is no column for the positions along y (y, yu, ys or ysu).");
   EXPECT_EQ(refusal(with("id x y", "id x x")), "d:9: the column 'x' occurs twice.");
+  EXPECT_EQ(refusal(with("id x y", "id x y radius diameter")),
+            "d:9: the columns 'radius' and 'diameter' both state the size of a bead; dump one of them.");
   EXPECT_EQ(refusal(with("ff ff pp", "xy xz yz ff ff pp")), "d:6: 3 numbers are needed, '0 8' was found.");
   EXPECT_EQ(refusal(with("0 8", "8 0")), "d:6: the box is empty: 8 is not below 0.");
   EXPECT_EQ(refusal(with("ATOMS\n2", "ATOMS\n-2")), "d:4: -2 atoms are announced.");

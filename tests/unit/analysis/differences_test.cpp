@@ -2,8 +2,10 @@
 // hand.
 #include "analysis/runs/differences.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/support/rigid_bed.hpp"
@@ -133,6 +135,42 @@ TEST(Differences, AFewSeedsAreNoCertainty) {
   EXPECT_NEAR(1.96 * d.seed_error().value(), 12.706 * std::sqrt(1.5) * 0.02 / std::sqrt(2), 1e-4);
   EXPECT_NE(d.attribution().find("within its error"), std::string::npos) << d.attribution();
   EXPECT_NE(d.attribution().find("2 runs only"), std::string::npos) << d.attribution();
+}
+
+// Benjamini & Hochberg's rule at 5 %, on numbers whose probabilities follow from the normal law: p(2.5) =
+// 0.0124, p(2.9) = 0.0037.
+TEST(Differences, AmongManyNumbersAFewLargeErrorsAreChance) {
+  const auto real_of = [](const std::vector<double>& errors) {
+    Runs runs = {run(Side::experiment, 0, 0.1), run(Side::simulation, 0, 0.1)};
+    for (auto& r : runs) r.results.clear();
+    for (std::size_t k = 0; k < errors.size(); ++k) {
+      const double shift = static_cast<double>(k + 1);  // no two numbers are the same
+      runs[0].results.push_back(
+          number(fmt::format("n_{}", k), shift + errors[k] * std::sqrt(2.0) * 0.1, 0.1));
+      runs[1].results.push_back(number(fmt::format("n_{}", k), shift, 0.1));
+    }
+    const auto all = find_differences(runs, match_runs(runs), {});
+    EXPECT_EQ(all.size(), errors.size());
+    return std::count_if(all.begin(), all.end(), [](const Difference& d) { return d.is_real(); });
+  };
+  const auto with = [](std::size_t n, double t) {  // n of ten
+    std::vector<double> errors(10, 0.5);
+    for (std::size_t k = 0; k < n; ++k) errors[k] = t;
+    return errors;
+  };
+  EXPECT_EQ(real_of({2.5}), 1);
+  EXPECT_EQ(real_of(with(1, 2.5)), 0);  // 0.0124 > 0.05/10
+  EXPECT_EQ(real_of(with(1, 2.9)), 1);  // 0.0037 < 0.05/10
+  EXPECT_EQ(real_of(with(2, 2.5)), 0);  // 0.0124 > 0.05 2/10
+  EXPECT_EQ(real_of(with(3, 2.5)), 3);  // 0.0124 < 0.05 3/10
+  EXPECT_EQ(real_of(with(10, 1.97)), 0) << "never below two errors";
+  EXPECT_EQ(real_of(with(10, 2.03)), 10);
+}
+
+TEST(Differences, ANumberThatRepeatsAnotherIsCountedOnce) {
+  Runs runs = {run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.5, 0.01)};
+  for (auto& r : runs) r.results.push_back(number("s_b_variance", r.results[0].value(), 0.01));
+  EXPECT_EQ(only(runs).quantity, "s_b");
 }
 
 TEST(Differences, WhatIsTheSameIsSaidToBe) {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <vector>
 
-#include "analysis/report/figures.hpp"
+#include "analysis/report/figure.hpp"
 #include "core/error.hpp"
 #include "tests/support/program.hpp"
 

@@ -19,7 +19,9 @@ constexpr int kFine = 8;  // grid points a pixel
 /// A cell with a column of beads along either wall and a row on the plate, each `gap_px` from it.
 /// \param thickness_px of walls and plate, which transmit a tenth and a fifth of the light; light is behind
 /// them. Infinite: they are opaque
-cv::Mat cell_with_beads(double gap_px, double blur_px, double noise, double thickness_px = HUGE_VAL) {
+/// \param through share of the light that the beads transmit
+cv::Mat cell_with_beads(double gap_px, double blur_px, double noise, double thickness_px = HUGE_VAL,
+                        float through = 0) {
   const cv::Size size(221, 181);
   cv::Mat1f fine(size * kFine, 1.0F);
   const auto at = [](int i) { return (i + 0.5) / kFine - 0.5; };
@@ -40,7 +42,7 @@ cv::Mat cell_with_beads(double gap_px, double blur_px, double noise, double thic
   for (const cv::Point2d& b : beads)
     for (int j = static_cast<int>((b.y - kRadius_px - 1) * kFine); at(j) < b.y + kRadius_px; ++j)
       for (int i = static_cast<int>((b.x - kRadius_px - 1) * kFine); at(i) < b.x + kRadius_px; ++i)
-        if (std::hypot(at(i) - b.x, at(j) - b.y) < kRadius_px) fine(j, i) = 0;
+        if (std::hypot(at(i) - b.x, at(j) - b.y) < kRadius_px) fine(j, i) = through;
   cv::GaussianBlur(fine, fine, {}, blur_px * kFine, blur_px * kFine, cv::BORDER_REPLICATE);
   cv::Mat1f light;
   cv::resize(fine, light, size, 0, 0, cv::INTER_AREA);
@@ -82,6 +84,25 @@ TEST(CellEdges, BeadsThatTouchTheEdgesDoNotMoveThem) {
       EXPECT_NEAR(offset_of(edges.right, drawn(kRight_px), x), 0, kBound_px) << gap_px << ' ' << blur_px;
       EXPECT_NEAR(offset_of(edges.plate, drawn(kPlate_px), y), 0, kBound_px) << gap_px << ' ' << blur_px;
     }
+}
+
+// Walls that are darker than the beads have a level of their own, also where beads touch them (before, edges
+// moved by 0.16 px).
+TEST(CellEdges, BeadsThatArePalerThanTheWallsDoNotMoveThem) {
+  constexpr double kBound_px = 0.0125;
+  const auto x = [](const EdgePoint& p) { return p.at.x_px; };
+  const auto y = [](const EdgePoint& p) { return p.at.y_px; };
+  const auto drawn = [](double edge) { return std::round((edge + 0.5) * kFine) / kFine - 0.5; };
+  for (const float through : {0.06F, 0.15F, 0.3F}) {
+    const CellEdges edges =
+        find_cell_edges(cell_with_beads(0, 0.9, 1, HUGE_VAL, through), false, 2 * kRadius_px);
+    ASSERT_GE(edges.left.size(), 40U) << through;
+    ASSERT_GE(edges.right.size(), 40U) << through;
+    ASSERT_GE(edges.plate.size(), 40U) << through;
+    EXPECT_NEAR(offset_of(edges.left, drawn(kLeft_px), x), 0, kBound_px) << through;
+    EXPECT_NEAR(offset_of(edges.right, drawn(kRight_px), x), 0, kBound_px) << through;
+    EXPECT_NEAR(offset_of(edges.plate, drawn(kPlate_px), y), 0, kBound_px) << through;
+  }
 }
 
 // Walls and plate are bars with light behind them. The bound is wider than above, because the level of a bar

@@ -74,6 +74,24 @@ TEST(FrameNumbers, UnevenStepsAreNoGaps) {
   EXPECT_TRUE(notes_on_names({"1234567890123456789012.png", "1234567890123456789019.png"}).empty());
 }
 
+TEST(FrameNumbers, APictureOfAnotherNameIsNoFrame) {
+  using Names = std::vector<std::string>;
+  const Names film = numbered("frame_{:04}.png", 0, 79);
+  EXPECT_EQ(outside_the_series(joined(film, {"overlay.png"})), Names{"overlay.png"});
+  EXPECT_EQ(outside_the_series(joined(film, {"background.tif", "mask_2.png"})),
+            (Names{"background.tif", "mask_2.png"}));
+  EXPECT_TRUE(outside_the_series(film).empty());
+  // The series continues these names.
+  EXPECT_TRUE(outside_the_series(joined({"s.tif"}, numbered("s_{}.tif", 1, 9))).empty());
+  EXPECT_TRUE(outside_the_series(joined({"img.png"}, numbered("img ({}).png", 1, 9))).empty());
+  EXPECT_TRUE(outside_the_series(joined({"cell-.png"}, numbered("cell-{}.png", 1, 9))).empty());
+  // Too few frames to know, two recordings, or names of their own.
+  EXPECT_TRUE(outside_the_series(joined(numbered("f_{}.png", 1, 7), {"overlay.png"})).empty());
+  EXPECT_TRUE(outside_the_series(joined(numbered("a_{}.png", 1, 20), numbered("b_{}.png", 1, 2))).empty());
+  EXPECT_TRUE(
+      outside_the_series({"a.png", "b.png", "c.png", "d.png", "e.png", "f.png", "g.png", "h.png"}).empty());
+}
+
 TEST(FrameNumbers, TwoCamerasInAFolderAreNoticed) {
   const auto notes = notes_on_names(joined(numbered("camA_{}.png", 1, 5), numbered("camB_{}.png", 1, 6)));
   ASSERT_EQ(notes.size(), 1U);

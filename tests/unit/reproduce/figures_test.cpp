@@ -78,7 +78,8 @@ TEST(PaperFigures, SolidBedsAreDrawnApartFromTheGas) {
                       {"contact_fraction", 0},
                       {"T_bar_z", {{"value", t}, {"interval", {t / 2, 2 * t}}}}});
   const Reproduction r = drawn("p2-fig2", points.dump());
-  ASSERT_EQ(r.figures.size(), 1U);
+  ASSERT_EQ(r.figures.size(), 5U);  // the figure, and the foot of each of the four systems
+  EXPECT_EQ(r.figures[1].name, "p2-fig2-foot-2d-rough");
   const analysis::Figure& f = r.figures.front();
   EXPECT_TRUE(
       f.data.starts_with("# 2D rough\n2.74 0.6 0.3 1.2\n10.95 0.4 0.2 0.8\n\n\n"

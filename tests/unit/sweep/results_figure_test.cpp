@@ -57,7 +57,7 @@ TEST(ResultsFigure, AxesHaveTheirUnits) {
   EXPECT_NE(f.plot.find("set ylabel 'T_{z}, m g σ'"), std::string::npos) << f.plot;
   const analysis::Figure curves =
       results_figure(points, {.result = "q6", .over = {"contact.mu", "cell.width"}});
-  EXPECT_NE(curves.plot.find("set xlabel 'contact.mu'"), std::string::npos) << curves.plot;
+  EXPECT_NE(curves.plot.find("set xlabel 'μ (contact.mu)'"), std::string::npos) << curves.plot;
   EXPECT_NE(curves.plot.find("set ylabel 'q6'"), std::string::npos) << curves.plot;
   EXPECT_NE(curves.plot.find("title 'cell.width = 10 σ' noenhanced"), std::string::npos) << curves.plot;
 }

@@ -1,7 +1,10 @@
 // Collected results of a sweep, written by hand in the format of `sweep collect`.
 #include "twin/sweep_results.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
@@ -75,6 +78,69 @@ TEST(SweepResults, PointsAndOnsetsAreWhereTheFileStatesThem) {
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_NE(notes[0].find("1 onset of beads.layers has no place in the diagram"), std::string::npos)
       << notes[0];
+}
+
+TEST(SweepResults, ImpossibleAndRepeatedPointsAreRefused) {
+  const TemporaryFolder folder;
+  const auto said = [&](const std::string& points) {
+    put_file(folder / "r.json",
+             R"({"format": "twincell sweep 1", "plan": "", "open": 0, "points": [)" + points + "]}");
+    return complaint_of([&] {
+      analysis::Comparison c;
+      (void)add_sweep(folder / "r.json", c);
+    });
+  };
+  const auto point = [](const char* id, double s_b) {
+    return fmt::format(R"({{"id": "{}", "conditions": {{"n_l": 20, "gamma": 1.5, "start": "random"}},)"
+                       R"("results": {{"s_b": {{"value": {}}}, "s_c": {{"value": 0.1}}}}}})",
+                       id, s_b);
+  };
+  EXPECT_EQ(said(point("a", 0.5) + ", " + point("b", 0.5)), "");
+  EXPECT_NE(said(point("a", 0.5) + ", " + point("a", 0.5)).find("'a' occurs twice"), std::string::npos);
+  EXPECT_NE(said(point("a", -0.5)).find("is -0.5; it cannot be negative"), std::string::npos);
+}
+
+// A grid over Gamma has no onsets of its own: its points bracket them, for each set of the other axes.
+TEST(SweepResults, PointsOfAGridBracketTheOnsets) {
+  std::string points;
+  const auto add = [&](int layers, double mu, double gamma, const char* phase) {
+    points += fmt::format(
+        R"({}{{"axes": {{"beads.layers": {}, "contact.mu": {}, "drive.gamma": {}}}, "conditions": {{"n_l": {}, "gamma": {},)"
+        R"( "start": "random"}}, "results": {{"phase": {{"value": "{}"}}}}}})",
+        points.empty() ? "" : ", ", layers, mu, gamma, layers, gamma, phase);
+  };
+  for (const double mu : {0.1, 0.6}) {
+    add(10, mu, 0.8, "co-moving");
+    add(10, mu, 1.4, mu < 0.5 ? "bouncing" : "co-moving");
+    add(10, mu, 2.2, "bouncing");
+    add(10, mu, 3.0, "convecting");
+  }
+  const TemporaryFolder folder;
+  const auto boundaries_of = [&](const std::string& onsets) {
+    put_file(folder / "grid.json", R"({"format": "twincell sweep 1", "plan": "", "open": 0, "points": [)" +
+                                       points + "]" + onsets + "}");
+    analysis::Comparison c;
+    EXPECT_TRUE(add_sweep(folder / "grid.json", c).empty());
+    EXPECT_EQ(c.sweep.size(), 8U);
+    std::vector<std::string> all;
+    for (const analysis::PhaseBoundary& b : c.boundaries)
+      all.push_back(analysis::onset_name(b.onset) + std::string(", ") + analysis::boundary_of(b) + ": " +
+                    analysis::boundary_text(b));
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  EXPECT_EQ(boundaries_of(""),
+            (std::vector<std::string>{"bouncing, sweep (random, contact.mu = 0.1): between 0.8 and 1.4",
+                                      "bouncing, sweep (random, contact.mu = 0.6): between 1.4 and 2.2",
+                                      "convection, sweep (random, contact.mu = 0.1): between 2.2 and 3",
+                                      "convection, sweep (random, contact.mu = 0.6): between 2.2 and 3"}));
+  // Onsets that were searched are not bracketed again by their points.
+  EXPECT_EQ(boundaries_of(
+                R"(, "onsets": [{"axes": {"contact.mu": 0.1}, "conditions": {"n_l": 10, "start": "random"},)"
+                R"("key": "drive.gamma", "verdict": "bouncing", "value": 1.1, "low": 1.0, "high": 1.2,)"
+                R"("runs": 12, "yes": 5}])")
+                .size(),
+            1U);
 }
 
 TEST(SweepResults, AnOnsetInAnotherMeasureOfTheDriveIsConverted) {

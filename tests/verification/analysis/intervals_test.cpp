@@ -49,7 +49,7 @@ TEST(Intervals, HoldTheirValueAndHaveAWidth) {
        "[start]\nkind = \"random\"\n" +
            kTime + "cycles = 60\n"},
       {"random bed that convects",
-       "preset = \"fortini-huang-2015\"\nbeads.layers = 6\ncell.width = 10\n[drive]\ngamma = 3\n"
+       "preset = \"fortini-huang-2015\"\nbeads.layers = 16\ncell.width = 10\n[drive]\ngamma = 3\n"
        "[start]\nkind = \"random\"\n" +
            kTime + "cycles = 60\n"},
       {"crystal at rest on the plate",

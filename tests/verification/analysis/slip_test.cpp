@@ -158,6 +158,25 @@ TEST(Slip, EligibleShareOfTwentyLayers) {
                  static_cast<double>(find_result(results, "p_s").n) / 400);
 }
 
+// The surface is that of the bed, however many beads fly above it; a heap counts by its middle.
+TEST(Slip, ThrownBeadsDoNotRaiseTheSurface) {
+  const auto still = [](std::size_t, int) { return Vec3(0, 0, 0); };
+  Crystal c = crystal(20);
+  const std::size_t eligible = find_result(film(c, 2, still), "p_s").n;
+  // The top row lies at 0.5 + 19 sqrt(3)/2; rows that are 10 sigma or more below it have ten beads each.
+  const auto rows = static_cast<std::size_t>((19 * kRow - kSlipDepth) / kRow) + 1;
+  EXPECT_EQ(eligible, kColumns * rows);
+  for (int k = 0; k < 30; ++k) {  // pairs, so that beads that fly together do not count either
+    c.rest.emplace_back(0.3 + k % 5 * 2.0, 0, 20.0 + k * 1.3);
+    c.rest.emplace_back(1.3 + k % 5 * 2.0, 0, 20.0 + k * 1.3);
+    c.row.insert(c.row.end(), 2, 0);
+  }
+  c.info.n_beads = c.rest.size();
+  const auto results = film(c, 2, still);
+  EXPECT_EQ(find_result(results, "p_s").n, eligible);
+  EXPECT_NE(find_result(results, "p_s").convention.find("below the surface of the bed"), std::string::npos);
+}
+
 // Whole rows slip together in some cycles. The beads are then not independent, and the interval must account
 // for it.
 TEST(Slip, TheIntervalCoversAlthoughBeadsSlipTogether) {
