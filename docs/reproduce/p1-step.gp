@@ -97,9 +97,9 @@ set logscale x
 set xtics ('' 6 1, '' 7 1, '' 8 1, '' 9 1, 10, 20, '' 30 1, '' 40 1, 50, '' 60 1, '' 70 1, '' 80 1, '' 90 1, 100, 200)
 set format x '%g'
 set ylabel 'p_s'
-set yrange [-0.0378150171:0.983190445]
+set yrange [-0.0268949889:0.699269712]
 unset logscale y
-set ytics 0.2
+set ytics 0.1
 set format y '%g'
 set xtics (6.37, 12.5, 25, 50, 100, 200, 400)
 set title '{/:Bold (c)} crystal'
@@ -145,7 +145,7 @@ set logscale x
 set xtics ('' 6 1, '' 7 1, '' 8 1, '' 9 1, 10, 20, '' 30 1, '' 40 1, 50, '' 60 1, '' 70 1, '' 80 1, '' 90 1, 100, 200)
 set format x '%g'
 set ylabel 's_b/converged'
-set yrange [0.97267684:1.07283845]
+set yrange [0.972938337:1.06603953]
 unset logscale y
 set ytics 0.02
 set format y '%g'
@@ -169,7 +169,7 @@ set logscale x
 set xtics ('' 6 1, '' 7 1, '' 8 1, '' 9 1, 10, 20, '' 30 1, '' 40 1, 50, '' 60 1, '' 70 1, '' 80 1, '' 90 1, 100, 200)
 set format x '%g'
 set ylabel 's_b/converged'
-set yrange [0.934153558:1.25196454]
+set yrange [0.939351766:1.11681114]
 unset logscale y
 set ytics 0.05
 set format y '%g'
@@ -193,9 +193,9 @@ set logscale x
 set xtics ('' 6 1, '' 7 1, '' 8 1, '' 9 1, 10, 20, '' 30 1, '' 40 1, 50, '' 60 1, '' 70 1, '' 80 1, '' 90 1, 100, 200)
 set format x '%g'
 set ylabel 's_c/σ'
-set yrange [-0.290332676:7.54864957]
+set yrange [-0.140518958:3.65349292]
 unset logscale y
-set ytics 1
+set ytics 0.5
 set format y '%g'
 set xtics (6.37, 12.5, 25, 50, 100, 200, 400)
 set title '{/:Bold (g)} crystal'

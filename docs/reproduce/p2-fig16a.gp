@@ -43,7 +43,7 @@ set logscale x
 set xtics (2, '' 3 1, '' 4 1, 5, '' 6 1, '' 7 1, '' 8 1, '' 9 1, 10, 20, '' 30 1, '' 40 1, 50, '' 60 1, '' 70 1, '' 80 1, '' 90 1, 100)
 set format x '%g'
 set ylabel 'T_z(z)/(m V_p^2)'
-set yrange [-0.0825191953:2.14549908]
+set yrange [-0.0829378714:2.15638466]
 unset logscale y
 set ytics 0.5
 set format y '%g'

@@ -43,7 +43,7 @@ set logscale x
 set xtics (0.5, '' 0.6 1, '' 0.7 1, '' 0.8 1, '' 0.9 1, 1, 2, '' 3 1, '' 4 1, 5, '' 6 1, '' 7 1, '' 8 1, '' 9 1, 10, 20, '' 30 1, '' 40 1, 50, '' 60 1, '' 70 1, '' 80 1, '' 90 1, 100)
 set format x '%g'
 set ylabel 'T_x/(m V_p^2)'
-set yrange [-0.029021255:0.754547417]
+set yrange [-0.0295445256:0.768157502]
 unset logscale y
 set ytics 0.1
 set format y '%g'

@@ -46,7 +46,7 @@ set logscale x
 set xtics ('' 3 1, '' 4 1, 5, '' 6 1, '' 7 1, '' 8 1, '' 9 1, 10, 20, '' 30 1, '' 40 1, 50, '' 60 1, '' 70 1, '' 80 1, '' 90 1, 100)
 set format x '%g'
 set ylabel 'T̄_{z}'
-set yrange [0.336090718:0.634095133]
+set yrange [0.33618616:0.640692369]
 unset logscale y
 set ytics 0.05
 set format y '%g'
@@ -65,7 +65,7 @@ set logscale x
 set xtics ('' 3 1, '' 4 1, 5, '' 6 1, '' 7 1, '' 8 1, '' 9 1, 10, 20, '' 30 1, '' 40 1, 50, '' 60 1, '' 70 1, '' 80 1, '' 90 1, 100)
 set format x '%g'
 set ylabel 'residual'
-set yrange [-0.0259714527:0.0213078845]
+set yrange [-0.0198514605:0.0247153155]
 unset logscale y
 set ytics 0.01
 set format y '%g'

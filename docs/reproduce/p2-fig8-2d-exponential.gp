@@ -46,7 +46,7 @@ unset logscale x
 set xtics 20
 set format x '%g'
 set ylabel 'T̄_{z}'
-set yrange [0.342471698:0.60698562]
+set yrange [0.340761031:0.612931489]
 unset logscale y
 set ytics 0.05
 set format y '%g'
@@ -65,7 +65,7 @@ unset logscale x
 set xtics 20
 set format x '%g'
 set ylabel 'residual'
-set yrange [-0.0139420063:0.013140368]
+set yrange [-0.0139350697:0.0117334404]
 unset logscale y
 set ytics 0.005
 set format y '%g'

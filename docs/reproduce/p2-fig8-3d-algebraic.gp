@@ -46,7 +46,7 @@ set logscale x
 set xtics ('' 3 1, '' 4 1, 5, '' 6 1, '' 7 1, '' 8 1, '' 9 1, 10, 20, '' 30 1, '' 40 1, 50, '' 60 1, '' 70 1, '' 80 1, '' 90 1, 100)
 set format x '%g'
 set ylabel 'T̄_{z}'
-set yrange [0.0679217627:0.3066577]
+set yrange [0.0677161016:0.307073909]
 unset logscale y
 set ytics 0.05
 set format y '%g'
@@ -65,7 +65,7 @@ set logscale x
 set xtics ('' 3 1, '' 4 1, 5, '' 6 1, '' 7 1, '' 8 1, '' 9 1, 10, 20, '' 30 1, '' 40 1, 50, '' 60 1, '' 70 1, '' 80 1, '' 90 1, 100)
 set format x '%g'
 set ylabel 'residual'
-set yrange [-0.0161718373:0.0137096214]
+set yrange [-0.0170955101:0.013490983]
 unset logscale y
 set ytics 0.005
 set format y '%g'

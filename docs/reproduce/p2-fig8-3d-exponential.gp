@@ -46,7 +46,7 @@ unset logscale x
 set xtics 20
 set format x '%g'
 set ylabel 'T̄_{z}'
-set yrange [0.075262754:0.28646852]
+set yrange [0.0740455108:0.28759634]
 unset logscale y
 set ytics 0.05
 set format y '%g'
@@ -65,7 +65,7 @@ unset logscale x
 set xtics 20
 set format x '%g'
 set ylabel 'residual'
-set yrange [-0.00846847159:0.00935651657]
+set yrange [-0.00972411751:0.0100474866]
 unset logscale y
 set ytics 0.005
 set format y '%g'

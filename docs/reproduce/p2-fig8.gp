@@ -43,9 +43,9 @@ set logscale x
 set xtics (2, '' 3 1, '' 4 1, 5, '' 6 1, '' 7 1, '' 8 1, '' 9 1, 10, 20, '' 30 1, '' 40 1, 50, '' 60 1, '' 70 1, '' 80 1, '' 90 1, 100)
 set format x '%g'
 set ylabel 'T_z/(m V_p^2)'
-set yrange [0.0107216818:0.710964173]
+set yrange [0.00725160171:0.730735726]
 set logscale y
-set ytics (0.02, '' 0.03 1, '' 0.04 1, 0.05, '' 0.06 1, '' 0.07 1, '' 0.08 1, '' 0.09 1, 0.1, 0.2, '' 0.3 1, '' 0.4 1, 0.5, '' 0.6 1, '' 0.7 1)
+set ytics ('' 0.008 1, '' 0.009 1, 0.01, 0.02, '' 0.03 1, '' 0.04 1, 0.05, '' 0.06 1, '' 0.07 1, '' 0.08 1, '' 0.09 1, 0.1, 0.2, '' 0.3 1, '' 0.4 1, 0.5, '' 0.6 1, '' 0.7 1)
 set format y '%g'
 set title 'Algebraic and exponential fits from W_f on, A = d, N = 4'
 plot 'p2-fig8.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title '2D rough', \

@@ -43,17 +43,17 @@ set logscale x
 set xtics (2, '' 3 1, '' 4 1, 5, '' 6 1, '' 7 1, '' 8 1, '' 9 1, 10)
 set format x '%g'
 set ylabel 'T_z/(m g d)'
-set yrange [0.624476969:38.1606568]
+set yrange [0.615593724:38.3024844]
 set logscale y
 set ytics ('' 0.7 1, '' 0.8 1, '' 0.9 1, 1, 2, '' 3 1, '' 4 1, 5, '' 6 1, '' 7 1, '' 8 1, '' 9 1, 10, 20, '' 30 1)
 set format y '%g'
 set title 'Power laws of T_z, A = d, N = 4'
 set key maxcols 1
-plot 'p2-table1.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title '2D rough, [W_f, W_2]: α = 1.594', \
+plot 'p2-table1.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title '2D rough, [W_f, W_2]: α = 1.569', \
      'p2-table1.dat' index 1 using 1:2 with lines lt 1 lw 1.8 dt 1 notitle, \
-     'p2-table1.dat' index 2 using 1:2:3:4 with yerrorbars lt 2 title '3D rough, [W_f, W_2]: α = 1.239', \
+     'p2-table1.dat' index 2 using 1:2:3:4 with yerrorbars lt 2 title '3D rough, [W_f, W_2]: α = 1.256', \
      'p2-table1.dat' index 3 using 1:2 with lines lt 2 lw 1.8 dt 1 notitle, \
-     'p2-table1.dat' index 4 using 1:2:3:4 with yerrorbars lt 3 title 'Warr et al., 2D rough: α = 1.510, paper 1.49', \
+     'p2-table1.dat' index 4 using 1:2:3:4 with yerrorbars lt 3 title 'Warr et al., 2D rough: α = 1.486, paper 1.49', \
      'p2-table1.dat' index 5 using 1:2 with lines lt 3 lw 1.8 dt 1 notitle, \
      'p2-table1.dat' index 6 using 1:2:3:4 with yerrorbars lt 4 title 'Feitosa and Menon, 2D rough: α = 1.954, paper 1.92', \
      'p2-table1.dat' index 7 using 1:2 with lines lt 4 lw 1.8 dt 1 notitle

@@ -38,22 +38,22 @@ set linetype 6 lc rgb '#56B4E9' pt 15 ps 0.9 lw 1.3
 set linetype 7 lc rgb '#000000' pt 6 ps 0.9 lw 1.3
 set linetype 8 lc rgb '#9A9A9A' pt 4 ps 0.9 lw 1.3
 set xlabel 'V_p/(g d)^{1/2}'
-set xrange [1.32341868:8.61571134]
+set xrange [1.32188506:8.87940433]
 set logscale x
 set xtics (2, '' 3 1, '' 4 1, 5, '' 6 1, '' 7 1, '' 8 1)
 set format x '%g'
 set ylabel 'Δh_{cm}/d'
-set yrange [1.39803058:14.0218917]
+set yrange [1.41453145:12.8509293]
 set logscale y
 set ytics (2, '' 3 1, '' 4 1, 5, '' 6 1, '' 7 1, '' 8 1, '' 9 1, 10)
 set format y '%g'
 set title 'Lift of the centre of mass, A = d, N = 4'
 set key maxcols 1
-plot 'p2-table2.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title '2D rough, [W_f, W_2]: α_h = 1.358', \
+plot 'p2-table2.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title '2D rough, [W_f, W_2]: α_h = 1.345', \
      'p2-table2.dat' index 1 using 1:2 with lines lt 1 lw 1.8 dt 1 notitle, \
-     'p2-table2.dat' index 2 using 1:2:3:4 with yerrorbars lt 2 title '3D rough, [W_f, W_2]: α_h = 0.967', \
+     'p2-table2.dat' index 2 using 1:2:3:4 with yerrorbars lt 2 title '3D rough, [W_f, W_2]: α_h = 0.971', \
      'p2-table2.dat' index 3 using 1:2 with lines lt 2 lw 1.8 dt 1 notitle, \
-     'p2-table2.dat' index 4 using 1:2:3:4 with yerrorbars lt 3 title 'Warr et al., 2D rough: α_h = 1.407, paper 1.41', \
+     'p2-table2.dat' index 4 using 1:2:3:4 with yerrorbars lt 3 title 'Warr et al., 2D rough: α_h = 1.423, paper 1.41', \
      'p2-table2.dat' index 5 using 1:2 with lines lt 3 lw 1.8 dt 1 notitle
 unset output
 reset
