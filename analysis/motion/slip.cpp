@@ -9,6 +9,8 @@
 #include <numbers>
 #include <utility>
 
+#include "core/median.hpp"
+
 namespace twincell::analysis {
 namespace {
 
@@ -65,9 +67,7 @@ std::optional<double> free_surface(const Frame& frame, const Neighbours& neighbo
   if (tops.empty()) return std::nullopt;
   std::vector<double> z;
   for (const auto& [column, top] : tops) z.push_back(top);
-  const auto middle = z.begin() + static_cast<std::ptrdiff_t>(z.size() / 2);
-  std::nth_element(z.begin(), middle, z.end());
-  return *middle;
+  return upper_median(std::move(z));
 }
 
 class Slip : public Observable {

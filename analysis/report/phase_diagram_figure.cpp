@@ -75,14 +75,7 @@ std::string shaded_phases(const std::vector<PhaseBoundary>& boundaries, const Pl
 }  // namespace
 
 Figure phase_diagram_figure(const std::vector<Run>& runs, const std::vector<PhaseBoundary>& boundaries) {
-  Figure f{.name = "phase_diagram",
-           .title = "Phase diagram",
-           .caption = {},
-           .width = 660,
-           .height = 560,
-           .plot = {},
-           .data = {},
-           .svg = {}};
+  Figure f{.name = "phase_diagram", .title = "Phase diagram", .width = 660, .height = 560};
   PlotRange n_l;
   bool one_omega = true;
   for (const Run& run : runs) {
@@ -124,14 +117,7 @@ Figure phase_diagram_figure(const std::vector<Run>& runs, const std::vector<Phas
 }
 
 Figure phase_strip_figure(const std::vector<Run>& runs) {
-  Figure f{.name = "phase_strip",
-           .title = "Phases along the drive strength",
-           .caption = {},
-           .width = 540,
-           .height = 300,
-           .plot = {},
-           .data = {},
-           .svg = {}};
+  Figure f{.name = "phase_strip", .title = "Phases along the drive strength", .height = 300};
   const std::string clauses = phase_blocks(runs, f.name, f.data, [](const Run& run) {
     return fmt::format("{} {} # {}\n", run.gamma, run.side == Side::experiment ? 1 : 0,
                        gnuplot_plain_text(run.name));

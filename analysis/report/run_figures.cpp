@@ -73,14 +73,7 @@ std::string curve_panels(const std::vector<Run>& runs, const std::string& name, 
 }  // namespace
 
 Figure thresholds_figure(const std::vector<Run>& runs) {
-  Figure f{.name = "thresholds",
-           .title = "s_b and s_c against the drive strength",
-           .caption = {},
-           .width = 540,
-           .height = 740,
-           .plot = {},
-           .data = {},
-           .svg = {}};
+  Figure f{.name = "thresholds", .title = "s_b and s_c against the drive strength", .height = 740};
   static constexpr double kFloor = 1e-5;  // the logarithmic axes cannot show zero
   const PlotRange x = gamma_range(runs);
   f.plot = fmt::format(
@@ -135,19 +128,12 @@ Figure thresholds_figure(const std::vector<Run>& runs) {
       "Top: s_b, the variation of the bed's height above the plate through a cycle; above σ/30 the bed "
       "bounces. Bottom: s_c, the deformation of the tracer line; above σ the bed convects. Bars: 95 % "
       "intervals (s_b by bootstrap over tracers, s_c as a correlated series over cycles). "
-      "Values below 10⁻⁴ are drawn at 10⁻⁴.";
+      "Values below 10⁻⁵ are drawn at 10⁻⁵.";
   return f;
 }
 
 Figure s_k_figure(const std::vector<Run>& runs) {
-  Figure f{.name = "s_k",
-           .title = "Height of the tracers above the plate through a cycle",
-           .caption = {},
-           .width = 540,
-           .height = 740,
-           .plot = {},
-           .data = {},
-           .svg = {}};
+  Figure f{.name = "s_k", .title = "Height of the tracers above the plate through a cycle", .height = 740};
   PlotRange y;
   const auto block = [&](const Run& run) -> std::string {
     const Result& s = find_result(run.results, "s_k");
@@ -176,14 +162,7 @@ Figure s_k_figure(const std::vector<Run>& runs) {
 }
 
 Figure s_j_figure(const std::vector<Run>& runs) {
-  Figure f{.name = "s_j",
-           .title = "Spread of the tracer line, cycle by cycle",
-           .caption = {},
-           .width = 540,
-           .height = 740,
-           .plot = {},
-           .data = {},
-           .svg = {}};
+  Figure f{.name = "s_j", .title = "Spread of the tracer line, cycle by cycle", .height = 740};
   PlotRange y;
   y.add(0);
   y.add(kConvectionThreshold);

@@ -51,7 +51,7 @@ struct H5mdReader::Impl {
   void read_parameters();
   void read_conditions();
   void check_gamma();
-  void require_rising_time() const;
+  void require_rising_time(const std::string& particles) const;
 };
 
 namespace {
@@ -124,7 +124,7 @@ void H5mdReader::Impl::open() {
                     path.string());
   read_parameters();
   require_ranges(info, path.string());
-  if (!foreign) require_rising_time();
+  if (!foreign) require_rising_time(group);
   if (info.columns.phase && !foreign)
     require_order(h5::read_dataset<std::int32_t>(file.get(), "observables/drive_phase/value"),
                   h5::read_dataset<std::int64_t>(file.get(), "observables/cycle/value"), path.string());
@@ -405,8 +405,8 @@ void H5mdReader::Impl::check_gamma() {
 }
 
 /// Refuses frames whose steps do not rise, or whose times fall.
-void H5mdReader::Impl::require_rising_time() const {
-  const std::string group = particle_group() + "/position/";
+void H5mdReader::Impl::require_rising_time(const std::string& particles) const {
+  const std::string group = particles + "/position/";
   const auto steps = h5::read_dataset<std::int64_t>(file.get(), group + "step");
   for (std::size_t f = 1; f < steps.size(); ++f)
     if (steps[f] <= steps[f - 1])

@@ -86,8 +86,7 @@ std::string left_out(const std::vector<std::string>& names, std::size_t frames) 
   const std::vector<std::string> named(names.begin(), names.end() - static_cast<std::ptrdiff_t>(more));
   return fmt::format(
       "{}{} {} left out, because the name does not belong to the series of the other {} pictures; name a "
-      "frame "
-      "like them.",
+      "frame like them.",
       fmt::join(named, ", "), more > 0 ? fmt::format(" and {} more", more) : "",
       names.size() == 1 ? "is" : "are", frames);
 }
