@@ -225,7 +225,7 @@ std::vector<Result> requested_results(const std::vector<ChosenObservable>& chose
       if (!options.wants(r.name)) continue;
       if (!r.shape.empty() && !r.interval && r.no_interval.empty())
         r.no_interval = "no interval is computed for the elements of an array";
-      results.push_back(std::move(r));
+      results.push_back(cut_interval(std::move(r)));
     }
   }
   return results;
@@ -311,6 +311,23 @@ std::vector<std::string> result_names() {
   for (const ObservableEntry* entry : entries())
     for (const NamedResult& result : entry->results) names.emplace_back(result.name);
   return names;
+}
+
+Result cut_interval(Result r) {
+  const Range range = named_result(r.name).range;
+  if (!r.interval || range == Range::any) return r;
+  if (r.value() >= 0) r.interval->low = std::max(0.0, r.interval->low);
+  if (range == Range::share && r.value() <= 1) r.interval->high = std::min(1.0, r.interval->high);
+  return r;
+}
+
+Interval uncut_interval(const Result& r) {
+  const Range range = named_result(r.name).range;
+  Interval interval = *r.interval;
+  if (range != Range::any && interval.low == 0 && r.value() > 0) interval.low = 2 * r.value() - interval.high;
+  if (range == Range::share && interval.high == 1 && r.value() < 1)
+    interval.high = 2 * r.value() - interval.low;
+  return interval;
 }
 
 NamedResult named_result(std::string_view name) {

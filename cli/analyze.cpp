@@ -21,6 +21,7 @@
 #include "cli/output.hpp"
 #include "cli/profile.hpp"
 #include "cli/results_summary.hpp"
+#include "cli/trajectory_notes.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
@@ -218,6 +219,7 @@ void run_windows(const Common& common, const AnalyzeOptions& options) {
     refuse("--output",
            "is the results of a whole run; with --window-cycles, use --table FILE.csv or --json.");
   const H5mdReader trajectory(options.trajectories.front());
+  note_trajectory(common, trajectory);
   note_drive(common, trajectory);
   note_cutoff(common, trajectory, options.analysis);
   note_periods(common, trajectory, options.analysis);
@@ -263,6 +265,7 @@ void run(const Common& common, const AnalyzeOptions& options) {
   }
   analysis::require_one_condition(trajectories);
   for (const TrajectorySource* trajectory : trajectories) {
+    note_trajectory(common, *trajectory);
     note_drive(common, *trajectory);
     note_cutoff(common, *trajectory, options.analysis);
     note_periods(common, *trajectory, options.analysis);

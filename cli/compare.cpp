@@ -6,6 +6,7 @@
 #include "analysis/report/report.hpp"
 #include "calibration/drive/plate_drive.hpp"
 #include "cli/comparing_options.hpp"
+#include "cli/trajectory_notes.hpp"
 #include "cli/verb.hpp"
 #include "core/error.hpp"
 #include "trajectory/formats/h5md_file.hpp"
@@ -64,6 +65,8 @@ twin::ComparingOptions configuration(const CompareOptions& o, const Common& comm
 void run(const Common& common, const CompareOptions& o) {
   const twin::ComparingOptions options = configuration(o, common);
   require_sides(o);
+  for (const auto& side : {o.experiments, o.simulations})
+    for (const std::filesystem::path& file : side) note_trajectory(common, H5mdReader(file));
   if (!o.trust_stated_drive) require_drive_of_film(o.experiments);
   const analysis::Comparison compared = compare_sides(common, options);
   report_comparison(common, options, compared, o.output, nlohmann::json::object(), "");

@@ -10,7 +10,6 @@
 #include <map>
 #include <memory>
 
-#include "cli/import_checks.hpp"
 #include "cli/named_columns.hpp"
 #include "cli/output.hpp"
 #include "cli/stack_info.hpp"
@@ -20,6 +19,7 @@
 #include "core/plural.hpp"
 #include "trajectory/foreign/foreign_trajectory.hpp"
 #include "trajectory/formats/h5md_file.hpp"
+#include "trajectory/trajectory_doubts.hpp"
 #include "trajectory/unit_checks.hpp"
 
 namespace twincell::cli {
@@ -32,6 +32,22 @@ struct ImportOptions {
   std::vector<std::string> columns;
   const CLI::Option *sigma = nullptr, *gravity = nullptr;  ///< of `foreign`
   ForeignOptions foreign;
+};
+
+/// Hands frames on to a writer and watches them.
+class WatchedWriter : public TrajectorySink {
+ public:
+  /// \param writer, info outlive this object
+  WatchedWriter(TrajectorySink& writer, const TrajectoryInfo& info) : writer_(writer), doubts_(info) {}
+  void append(const Frame& frame) override {
+    doubts_.watch(frame);
+    writer_.append(frame);
+  }
+  [[nodiscard]] const TrajectoryDoubts& doubts() const { return doubts_; }
+
+ private:
+  TrajectorySink& writer_;
+  TrajectoryDoubts doubts_;
 };
 
 /// Refuses a file in millimetres, for example, without the diameter of a bead and gravity in its units. Notes
@@ -134,7 +150,7 @@ void run(ImportOptions& o, const Common& common) {
   info.provenance_json = provenance.to_json();
   H5mdWriter writer(o.output, info);
   ProgressBar writing(common, "writing");
-  WatchedImport watched(writer, info);
+  WatchedWriter watched(writer, info);
   source.copy_to(watched, writing);
   writer.finish();
   if (info.box.dimension == 3 && source.is_flat())
@@ -142,7 +158,7 @@ void run(ImportOptions& o, const Common& common) {
   note_doubts(common, source, o.foreign.sigma);
   for (const std::string& doubt : implausible_numbers(shaken_cell(info.scale, info.drive)))
     note(common, doubt);
-  for (const std::string& doubt : watched.doubts()) note(common, doubt);
+  for (const std::string& doubt : watched.doubts().sentences()) note(common, doubt + ".");
   // Some programs count from 1, which the summary says; gaps in the numbers are no such habit.
   const std::string numbers = new_numbers(source.ids());
   const bool gaps = !numbers.empty() && source.ids().back() - source.ids().front() + 1 !=

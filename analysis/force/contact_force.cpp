@@ -6,13 +6,13 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{"contact_force"},
-                                    {"tangential_to_normal"},
+constexpr NamedResult kResults[] = {{.name = "contact_force", .range = Range::not_negative},
+                                    {.name = "tangential_to_normal", .range = Range::not_negative},
                                     {"contact_force_density"},
                                     {"contact_force_density_low"},
                                     {"contact_force_density_high"},
                                     {"contact_force_ratio"},
-                                    {"mechanical_contact_number"}};
+                                    {.name = "mechanical_contact_number", .range = Range::not_negative}};
 const char* const kSource = "Mueth, Jaeger & Nagel 1998";
 const char* const kThornton = "Thornton 2000";
 

@@ -16,7 +16,7 @@ namespace {
 constexpr NamedResult kResults[] = {{"stress"},
                                     {"stress_kinetic"},
                                     {.name = "pressure", .main = true},
-                                    {"pressure_kinetic"},
+                                    {.name = "pressure_kinetic", .range = Range::not_negative},
                                     {.name = "stress_xx_z", .along = "stress_z", .elsewhere = 0},
                                     {.name = "stress_zz_z", .along = "stress_z", .elsewhere = 0},
                                     {.name = "stress_z", .along = "stress_z"},

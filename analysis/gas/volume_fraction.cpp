@@ -9,7 +9,8 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{"phi_top"}, {.name = "phi_cm", .main = true}};
+constexpr NamedResult kResults[] = {{.name = "phi_top", .range = Range::share},
+                                    {.name = "phi_cm", .range = Range::share, .main = true}};
 
 const char* const kSource = "Bhateja, Sharma & Singh 2016, sec. IV";
 

@@ -16,7 +16,8 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{.name = "flight_time", .main = true}, {"flight_share"}};
+constexpr NamedResult kResults[] = {{.name = "flight_time", .range = Range::not_negative, .main = true},
+                                    {.name = "flight_share", .range = Range::share}};
 
 const char* const kSource = "Mehta & Luck 1990, the completely inelastic case";
 const char* const kNoCycle = "no whole cycle after the first contact with the plate";

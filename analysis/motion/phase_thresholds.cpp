@@ -15,23 +15,24 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{"s_k"},
-                                    {.name = "s_b", .pooling = Pooling::root_mean_square, .main = true},
-                                    {"s_b_variance", Pooling::root_mean_square},
-                                    {"s_b_about_rest", Pooling::root_mean_square},
-                                    {"s_b_as_printed", Pooling::root_mean_square},
-                                    {"half_pixel", Pooling::mean, true},
-                                    {"s_b_noise"},
-                                    {"s_j_noise"},
-                                    {"s_j", Pooling::root_mean_square},
-                                    {.name = "s_c", .pooling = Pooling::root_mean_square, .main = true},
-                                    {"cycle_of_convection"},
-                                    {"s_j_growth"},
-                                    {"s_j_growth_late"},
-                                    {"drift"},
-                                    {"phase"},
-                                    {"tracers", Pooling::per_bead},
-                                    {"tracer_heights", Pooling::per_bead}};
+constexpr NamedResult kResults[] = {
+    {"s_k"},
+    {.name = "s_b", .pooling = Pooling::root_mean_square, .range = Range::not_negative, .main = true},
+    {"s_b_variance", Pooling::root_mean_square},
+    {"s_b_about_rest", Pooling::root_mean_square},
+    {"s_b_as_printed", Pooling::root_mean_square},
+    {.name = "half_pixel", .range = Range::not_negative, .may_repeat = true},
+    {"s_b_noise"},
+    {"s_j_noise"},
+    {"s_j", Pooling::root_mean_square},
+    {.name = "s_c", .pooling = Pooling::root_mean_square, .range = Range::not_negative, .main = true},
+    {"cycle_of_convection"},
+    {"s_j_growth"},
+    {"s_j_growth_late"},
+    {"drift"},
+    {"phase"},
+    {"tracers", Pooling::per_bead},
+    {"tracer_heights", Pooling::per_bead}};
 
 /// The phase by s_b and s_c, which are in `all`.
 Result phase_result(const std::vector<Result>& all) {

@@ -19,8 +19,12 @@ namespace {
 constexpr int kDefinition = 2;
 
 constexpr NamedResult slip_result(std::string_view name, Pooling pooling) {
-  return {
-      .name = name, .pooling = pooling, .may_repeat = true, .main = name == "p_s", .definition = kDefinition};
+  return {.name = name,
+          .pooling = pooling,
+          .range = pooling == Pooling::sum ? Range::not_negative : Range::share,
+          .may_repeat = true,
+          .main = name == "p_s",
+          .definition = kDefinition};
 }
 
 constexpr NamedResult kResults[] = {

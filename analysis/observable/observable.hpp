@@ -162,17 +162,32 @@ class Observable {
 /// How the values of several runs of one setting are combined (runs/pooling.hpp).
 enum class Pooling {
   mean,
-  probability,       ///< the mean; its interval lies in [0, 1] and is binomial if no run has an event
+  probability,       ///< the mean; its interval is binomial if no run has an event
   root_mean_square,  ///< square root of the mean square: displacements
   sum,               ///< counts
   angle,             ///< circular mean with the period of a hexagonal lattice, 60 degrees
   per_bead,          ///< not pooled: an element belongs to a bead, and the beads of two runs differ
 };
 
+/// Values that a quantity can have by its definition. The intervals of its estimates are cut there, which
+/// cannot cost coverage.
+enum class Range {
+  any,
+  not_negative,
+  share,  ///< [0, 1]
+};
+/// The result with its interval cut to the range that its name has. An estimate outside the range, such as
+/// one from which noise was subtracted, keeps its interval.
+Result cut_interval(Result result);
+/// The interval of a result, before `cut_interval` cut it: the side that was cut is as long as the other one.
+/// \pre the result has an interval
+Interval uncut_interval(const Result& result);
+
 /// A result that an observable gives.
 struct NamedResult {
   std::string_view name;
   Pooling pooling = Pooling::mean;
+  Range range = Range::any;
   bool may_repeat =
       false;          ///< two different runs may well give the same value: a count, or a camera constant
   bool main = false;  ///< one of the main results, which `analyze` and `measure` print without -v

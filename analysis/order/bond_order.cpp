@@ -5,11 +5,11 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{.name = "q6", .main = true},
-                                    {"psi6"},
-                                    {"psi4"},
-                                    {.name = "hexagonal_fraction", .main = true},
-                                    {"square_fraction"},
+constexpr NamedResult kResults[] = {{.name = "q6", .range = Range::share, .main = true},
+                                    {.name = "psi6", .range = Range::share},
+                                    {.name = "psi4", .range = Range::share},
+                                    {.name = "hexagonal_fraction", .range = Range::share, .main = true},
+                                    {.name = "square_fraction", .range = Range::share},
                                     {"q6_beads", Pooling::per_bead},
                                     {"psi6_beads", Pooling::per_bead},
                                     {"psi4_beads", Pooling::per_bead}};

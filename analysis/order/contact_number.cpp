@@ -6,7 +6,8 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{.name = "contact_number", .main = true}, {"contact_number_inside"}};
+constexpr NamedResult kResults[] = {{.name = "contact_number", .range = Range::not_negative, .main = true},
+                                    {.name = "contact_number_inside", .range = Range::not_negative}};
 const char* const kSource = "Thornton 2000";
 
 class ContactNumber : public Observable {

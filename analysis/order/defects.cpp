@@ -10,13 +10,13 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{"disclinations_5"},
-                                    {"disclinations_7"},
-                                    {"disclinations_other"},
-                                    {.name = "dislocations", .main = true},
-                                    {"free_disclinations"},
-                                    {"holes"},
-                                    {.name = "defect_fraction", .main = true},
+constexpr NamedResult kResults[] = {{.name = "disclinations_5", .range = Range::not_negative},
+                                    {.name = "disclinations_7", .range = Range::not_negative},
+                                    {.name = "disclinations_other", .range = Range::not_negative},
+                                    {.name = "dislocations", .range = Range::not_negative, .main = true},
+                                    {.name = "free_disclinations", .range = Range::not_negative},
+                                    {.name = "holes", .range = Range::not_negative},
+                                    {.name = "defect_fraction", .range = Range::share, .main = true},
                                     {"defect_fraction_j"},
                                     {"coordination_beads", Pooling::per_bead}};
 

@@ -13,10 +13,10 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{.name = "grains", .main = true},
-                                    {"largest_grain"},
-                                    {"grain_boundary_fraction"},
-                                    {"grain_boundary_angle"},
+constexpr NamedResult kResults[] = {{.name = "grains", .range = Range::not_negative, .main = true},
+                                    {.name = "largest_grain", .range = Range::share},
+                                    {.name = "grain_boundary_fraction", .range = Range::share},
+                                    {.name = "grain_boundary_angle", .range = Range::not_negative},
                                     {"grain_beads", Pooling::per_bead}};
 
 const char* const kSource = "Fortini & Huang 2015, sec. III";

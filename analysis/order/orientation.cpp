@@ -9,10 +9,10 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{"ordered_fraction"},
+constexpr NamedResult kResults[] = {{.name = "ordered_fraction", .range = Range::share},
                                     {"orientation", Pooling::angle},
-                                    {.name = "orientation_a", .main = true},
-                                    {.name = "orientation_b", .main = true},
+                                    {.name = "orientation_a", .range = Range::share, .main = true},
+                                    {.name = "orientation_b", .range = Range::share, .main = true},
                                     {"orientation_beads", Pooling::per_bead}};
 
 const char* const kSource = "Fortini & Huang 2015, Fig. 2";

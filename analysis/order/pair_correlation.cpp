@@ -10,8 +10,12 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{"g_r"},          {"g_r_low"}, {"g_r_high"},
-                                    {"g_r_distance"}, {"g_peak"},  {"g_peak_distance"}};
+constexpr NamedResult kResults[] = {{"g_r"},
+                                    {"g_r_low"},
+                                    {"g_r_high"},
+                                    {"g_r_distance"},
+                                    {.name = "g_peak", .range = Range::not_negative},
+                                    {"g_peak_distance"}};
 constexpr auto kBins = static_cast<std::size_t>(kPairCorrelationRange / kPairCorrelationWidth + 0.5);
 const char* const kSource = "Ripley 1988, ch. 3";
 

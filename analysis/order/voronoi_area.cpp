@@ -7,12 +7,12 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{"voronoi_area"},
-                                    {"voronoi_area_variance"},
+constexpr NamedResult kResults[] = {{.name = "voronoi_area", .range = Range::not_negative},
+                                    {.name = "voronoi_area_variance", .range = Range::not_negative},
                                     {"voronoi_area_density"},
                                     {"voronoi_area_density_low"},
                                     {"voronoi_area_density_high"},
-                                    {"voronoi_area_ratio"}};
+                                    {.name = "voronoi_area_ratio", .range = Range::not_negative}};
 const char* const kSource = "Starr et al. 2002";
 
 /// Areas of the enclosed cells, sigma^2.

@@ -36,7 +36,7 @@ const Result* scalar(const std::vector<Result>& results, const std::string& name
 /// rounding errors and does not measure its uncertainty.
 std::optional<double> standard_error(const Result& r) {
   if (!r.interval || !std::isfinite(r.interval->high - r.interval->low)) return std::nullopt;
-  const double error = standard_error(*r.interval);
+  const double error = standard_error(uncut_interval(r));
   return error > 1e-12 * std::abs(r.value()) ? std::optional(error) : std::nullopt;
 }
 

@@ -64,8 +64,8 @@ Values values_of(const std::vector<const Result*>& runs, Pooling rule) {
     v.values.push_back(onto(rule, r->value(), centre));
     std::optional<double> error;
     if (r->interval && std::isfinite(r->interval->high - r->interval->low)) {
-      error = (onto(rule, r->interval->high, centre) - onto(rule, r->interval->low, centre)) /
-              (2 * kStandardErrors);
+      const Interval own = uncut_interval(*r);
+      error = (onto(rule, own.high, centre) - onto(rule, own.low, centre)) / (2 * kStandardErrors);
       v.methods.push_back(r->interval->method.substr(0, r->interval->method.find_first_of(":;(")));
       while (v.methods.back().ends_with(' ')) v.methods.back().pop_back();
     }
@@ -146,8 +146,7 @@ Result pooled_scalar(const std::vector<const Result*>& with, const std::vector<d
     if (r.interval) r.interval->method += ", of the only run that has it";
     return r;
   }
-  const bool is_probability = rule == Pooling::probability;
-  if (is_probability && *std::max_element(v.values.begin(), v.values.end()) == 0) {
+  if (rule == Pooling::probability && *std::max_element(v.values.begin(), v.values.end()) == 0) {
     double trials = 0;
     for (const Result* run : with) trials += static_cast<double>(run->n);
     r.interval =
@@ -161,11 +160,7 @@ Result pooled_scalar(const std::vector<const Result*>& with, const std::vector<d
   }
   r.interval->low = back(rule, r.interval->low) - turns;
   r.interval->high = back(rule, r.interval->high) - turns;
-  if (is_probability) {
-    r.interval->low = std::max(0.0, r.interval->low);
-    r.interval->high = std::min(1.0, r.interval->high);
-  }
-  return r;
+  return cut_interval(std::move(r));
 }
 
 /// The present result of that name of each run, or null.

@@ -93,6 +93,25 @@ TEST(Pooling, AgreementByChanceIsNotBetterThanTheRunsAre) {
   EXPECT_EQ(pool(runs_of("half_pixel", {0.02, 0.02})).front().no_interval, "the same in every run");
 }
 
+TEST(Pooling, IntervalsEndWhereTheQuantityDoes) {
+  // Student's t for two runs: 12.7 standard errors on either side of the mean.
+  const Interval temperature = pool(runs_of("T_g", {0.1, 0.3})).front().interval.value();
+  EXPECT_EQ(temperature.low, 0);
+  EXPECT_NEAR(temperature.high, 0.2 + 1.27062, 1e-4);
+  const Interval share = pool(runs_of("flight_share", {0.85, 0.95})).front().interval.value();
+  EXPECT_NEAR(share.low, 0.9 - 0.635310, 1e-4);
+  EXPECT_EQ(share.high, 1);
+  EXPECT_LT(pool(runs_of("h_cm", {0.1, 0.3})).front().interval->low, 0);
+}
+
+TEST(Pooling, ACutIntervalHasTheStandardErrorOfItsOtherSide) {
+  // Two runs that agree at 0.1 with 1.96 standard errors of 0.3 each, cut at 0: 0.3/sqrt(2) for their mean.
+  const Interval own{0, 0.4, 0.95, "block averages"};
+  const Interval pooled =
+      pool({{number("T_g", 0.1, own)}, {number("T_g", 0.1, own)}}).front().interval.value();
+  EXPECT_NEAR(pooled.high - 0.1, 0.3 / std::sqrt(2), 1e-12);
+}
+
 TEST(Pooling, TheSameRunTwiceIsRefused) {
   const double drawn = 0.123456789012345678;
   EXPECT_THROW(pool(runs_of("T_g", {drawn, 0.2, drawn})), ConfigError);

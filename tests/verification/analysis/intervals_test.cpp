@@ -36,6 +36,9 @@ std::set<std::string> hold(const std::string& what, const std::vector<Result>& r
     EXPECT_LE(r.interval->low, r.value()) << of;
     EXPECT_GE(r.interval->high, r.value()) << of;
     EXPECT_GT(r.interval->high, r.interval->low) << of << " = " << r.value() << ", an interval without width";
+    const Range range = named_result(r.name).range;
+    EXPECT_TRUE(range == Range::any || r.interval->low >= 0) << of << " from " << r.interval->low;
+    EXPECT_TRUE(range != Range::share || r.interval->high <= 1) << of << " to " << r.interval->high;
   }
   return with;
 }

@@ -1,35 +1,38 @@
 #pragma once
 /// \file
-/// Looks for signs that an imported file means something else than the options say: beads beneath the plate,
-/// velocities or radii that contradict the positions, single beads that jump, beads that are listed twice.
+/// Signs that the numbers of a trajectory mean something else than its reader believes: beads beneath the
+/// plate, velocities or radii that contradict the positions, single beads that jump, beads that are listed
+/// twice.
 
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "trajectory/trajectory.hpp"
 
-namespace twincell::cli {
+namespace twincell {
 
-/// Hands frames on to a writer and watches them.
-class WatchedImport : public TrajectorySink {
+/// Watches the frames of a trajectory in their order.
+class TrajectoryDoubts {
  public:
-  /// \param writer, info outlive this object
-  WatchedImport(TrajectorySink& writer, const TrajectoryInfo& info) : writer_(writer), info_(info) {}
-  void append(const Frame& frame) override;
-  /// What is doubtful in the frames so far, in sentences.
-  [[nodiscard]] std::vector<std::string> doubts() const;
+  /// \param info outlives this object
+  explicit TrajectoryDoubts(const TrajectoryInfo& info) : info_(info) {}
+  void watch(const Frame& frame);
+  /// What is doubtful in the frames so far, in sentences without a full stop.
+  [[nodiscard]] std::vector<std::string> sentences() const;
 
  private:
   void watch_plate(const Frame& frame);
   void watch_steps(const Frame& frame);
-  void watch_doubles(const Frame& frame);
+  void watch_spacing(const Frame& frame);
+  /// What contradicts the velocities, in sentences.
+  [[nodiscard]] std::vector<std::string> doubts_of_velocities() const;
   /// Says that the velocities have another sign or other axes than the moves; empty if they have not.
   [[nodiscard]] std::string turned_velocities() const;
 
-  TrajectorySink& writer_;
   const TrajectoryInfo& info_;
   Frame before_;
   std::size_t frames_ = 0;
@@ -43,6 +46,11 @@ class WatchedImport : public TrajectorySink {
   double jump_length_ = 0;              ///< sigma
   std::size_t doubled_ = 0;             ///< beads at the place of another one
   std::int64_t doubled_step_ = 0;       ///< of the first frame with one
+  std::size_t spaced_ = 0, deep_ = 0;   ///< beads, and those of them deep in an earlier one
 };
 
-}  // namespace twincell::cli
+/// What is doubtful in the first `frames` frames of a trajectory, in sentences without a full stop.
+/// \throws InputError for a frame that cannot be read
+std::vector<std::string> doubts_of(const TrajectorySource& trajectory, std::size_t frames);
+
+}  // namespace twincell

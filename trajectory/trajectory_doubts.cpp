@@ -1,4 +1,4 @@
-#include "cli/import_checks.hpp"
+#include "trajectory/trajectory_doubts.hpp"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,14 @@
 #include "core/plural.hpp"
 #include "trajectory/spacing.hpp"
 
-namespace twincell::cli {
+namespace twincell {
 
-void WatchedImport::watch_plate(const Frame& frame) {
+namespace {
+/// Distance of two centres, in diameters of the smallest bead, below which their overlap is not elastic.
+constexpr double kDeepOverlap = 0.8;
+}  // namespace
+
+void TrajectoryDoubts::watch_plate(const Frame& frame) {
   if (!info_.drive || info_.drive->axis != Axis::z) return;
   for (std::size_t i = 0; i < frame.position.size(); ++i) {
     if (!frame.present(i)) continue;
@@ -21,7 +26,7 @@ void WatchedImport::watch_plate(const Frame& frame) {
   }
 }
 
-void WatchedImport::watch_steps(const Frame& frame) {
+void TrajectoryDoubts::watch_steps(const Frame& frame) {
   constexpr double kFarthest = 10, kOfMedian = 50;  // sigma; median step of the frame
   const double time = frame.time - before_.time;
   std::vector<double> steps;
@@ -53,24 +58,26 @@ void WatchedImport::watch_steps(const Frame& frame) {
   }
 }
 
-void WatchedImport::watch_doubles(const Frame& frame) {
-  const double smallest =
-      info_.radius.empty() ? kUsualRadius : *std::min_element(info_.radius.begin(), info_.radius.end());
-  if (!(smallest > 0)) return;
+void TrajectoryDoubts::watch_spacing(const Frame& frame) {
+  double smallest = info_.radius.empty() ? kUsualRadius : HUGE_VAL;
+  for (const double radius : info_.radius)
+    if (radius > 0) smallest = std::min(smallest, radius);
+  if (!std::isfinite(smallest)) return;
   const std::size_t here = listed_again(frame.position, kSameBead * 2 * smallest);
   if (doubled_ == 0) doubled_step_ = frame.step;
   doubled_ += here;
+  spaced_ += frame.n_present();
+  deep_ += listed_again(frame.position, kDeepOverlap * 2 * smallest);
 }
 
-void WatchedImport::append(const Frame& frame) {
+void TrajectoryDoubts::watch(const Frame& frame) {
   watch_plate(frame);
-  watch_doubles(frame);
+  watch_spacing(frame);
   if (frames_++ > 0) watch_steps(frame);
   before_ = frame;
-  writer_.append(frame);
 }
 
-std::string WatchedImport::turned_velocities() const {
+std::string TrajectoryDoubts::turned_velocities() const {
   constexpr double kClearly = 0.7;  // correlation of moves and velocities
   const auto correlation = [&](int move, int path) {
     const double size = std::sqrt(moves_(move, move) * paths_(path, path));
@@ -80,7 +87,7 @@ std::string WatchedImport::turned_velocities() const {
     if (correlation(axis, axis) < -kClearly)
       return fmt::format(
           "along {} the beads move against their velocities: the velocities have another sign than the "
-          "positions.",
+          "positions",
           "xyz"[axis]);
   for (const int axis : {0, 1, 2})
     for (const int other : {0, 1, 2})
@@ -89,30 +96,45 @@ std::string WatchedImport::turned_velocities() const {
           correlation(other, other) < kClearly)
         return fmt::format(
             "the beads move along {0} as their velocities along {1} say: {0} and {1} of the "
-            "velocities are exchanged.",
+            "velocities are exchanged",
             "xyz"[other], "xyz"[axis]);
   return {};
 }
 
-std::vector<std::string> WatchedImport::doubts() const {
+std::vector<std::string> TrajectoryDoubts::doubts_of_velocities() const {
+  std::vector<std::string> doubts;
+  if (by_velocity_ == 0 && moved_ > 0) doubts.emplace_back("all velocities are 0, and the beads move");
+  const double ratio = by_velocity_ > 0 ? std::sqrt(moved_ / by_velocity_) : 1;
+  // With N_k frames per cycle a bead on the plate moves tan(x)/x times its mean velocity, x = pi/N_k: 1.65 at
+  // N_k = 3, and without bound at 2.
+  constexpr double kTooFar = 1.5, kTooNear = 0.5;
+  constexpr int kSome = 5, kDense = 8;  // frames per cycle
+  const int phases = info_.phases_per_cycle;
+  if ((ratio > kTooFar && (phases == 0 || phases >= kSome)) || (ratio < kTooNear && phases >= kDense))
+    doubts.push_back(fmt::format(
+        "from frame to frame the beads move {:.3g} times as far as their velocities say: the unit of the "
+        "velocities, or the time between frames (import --timestep), is wrong",
+        ratio));
+  if (const std::string turned = turned_velocities(); !turned.empty()) doubts.push_back(turned);
+  return doubts;
+}
+
+std::vector<std::string> TrajectoryDoubts::sentences() const {
   std::vector<std::string> doubts;
   constexpr double kMaxShareBelow = 0.002;
   if (static_cast<double>(below_) > kMaxShareBelow * static_cast<double>(all_))
     doubts.push_back(fmt::format(
-        "{:.3g} % of the beads lie beneath the plate: the direction of y (--y-up), the origin, or amplitude, "
-        "frequency or phase of the drive is wrong.",
+        "{:.3g} % of the beads lie beneath the plate: the direction of y (import --y-up), the origin, or "
+        "amplitude, frequency or phase of the drive is wrong",
         100 * static_cast<double>(below_) / static_cast<double>(all_)));
-  // A bead cannot move further than along its path. With several frames in a cycle it moves nearly as far.
-  constexpr double kTooFar = 1.5, kTooNear = 0.5;
-  constexpr int kDense = 8;  // frames per cycle
-  const double ratio = by_velocity_ > 0 ? std::sqrt(moved_ / by_velocity_) : 1;
-  if (by_velocity_ == 0 && moved_ > 0) doubts.emplace_back("all velocities are 0, and the beads move.");
-  if (ratio > kTooFar || (ratio < kTooNear && info_.phases_per_cycle >= kDense))
-    doubts.push_back(fmt::format(
-        "from frame to frame the beads move {:.3g} times as far as their velocities say: the unit of the "
-        "velocities, or the time between frames (--timestep), is wrong.",
-        ratio));
-  if (const std::string turned = turned_velocities(); !turned.empty()) doubts.push_back(turned);
+  std::ranges::move(doubts_of_velocities(), std::back_inserter(doubts));
+  constexpr double kMaxShareDeep = 0.2;
+  if (static_cast<double>(deep_) > kMaxShareDeep * static_cast<double>(spaced_))
+    doubts.push_back(
+        fmt::format("{:.3g} % of the beads overlap an earlier one by more than {:g} diameters: are the radii "
+                    "diameters, or "
+                    "is the unit of length wrong?",
+                    100 * static_cast<double>(deep_) / static_cast<double>(spaced_), 1 - kDeepOverlap));
   if (doubled_ > 0)
     doubts.push_back(
         fmt::format("{}, the first in the frame of step {}, {} closer than {:g} diameters to another bead: "
@@ -121,10 +143,20 @@ std::vector<std::string> WatchedImport::doubts() const {
   if (jumps_ > 0)
     doubts.push_back(fmt::format(
         "bead {} moves by {:.4g} bead diameters between the frames of the steps {} and {}{}, and the others "
-        "hardly move.",
+        "hardly move",
         jumped_, jump_length_, jump_[0], jump_[1],
         jumps_ > 1 ? fmt::format("; {} jumps of this kind", jumps_) : ""));
   return doubts;
 }
 
-}  // namespace twincell::cli
+std::vector<std::string> doubts_of(const TrajectorySource& trajectory, std::size_t frames) {
+  TrajectoryDoubts doubts(trajectory.info());
+  Frame frame;
+  for (std::size_t f = 0; f < std::min(frames, trajectory.n_frames()); ++f) {
+    trajectory.read(f, frame);
+    doubts.watch(frame);
+  }
+  return doubts.sentences();
+}
+
+}  // namespace twincell
