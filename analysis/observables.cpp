@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -80,10 +79,10 @@ void check(const AnalysisOptions& options) {
     if (std::find(names.begin(), names.end(), name) == names.end())
       throw ConfigError({.file = {}, .key = "only"}, no_such_result(name) + '.');
   if (options.discard_cycles < 0)
-    throw ConfigError({.file = {}, .key = "discard"},
+    throw ConfigError({.file = {}, .key = "--discard"},
                       fmt::format("is {}; it must be at least 0.", options.discard_cycles));
   if (options.cycles < 0)
-    throw ConfigError({.file = {}, .key = "cycles"},
+    throw ConfigError({.file = {}, .key = "--cycles"},
                       fmt::format("is {}; it must be at least 1, or 0 for all.", options.cycles));
   if (options.neighbour_cutoff)
     require_range({.file = {}, .key = "cutoff"}, *options.neighbour_cutoff, 0, 5, true);
@@ -132,7 +131,7 @@ AnalysisContext make_context(const TrajectorySource& trajectory, const AnalysisO
 void require_cycles(const TrajectorySource& trajectory, const AnalysisOptions& options) {
   const TrajectoryInfo& info = trajectory.info();
   if ((options.discard_cycles > 0 || options.cycles > 0) && !info.columns.phase)
-    throw ConfigError({.file = trajectory.name(), .key = options.cycles > 0 ? "cycles" : "discard"},
+    throw ConfigError({.file = trajectory.name(), .key = options.cycles > 0 ? "--cycles" : "--discard"},
                       "cycles cannot be chosen from a trajectory whose frames have no cycle number");
 
   if (const std::optional<Drive>& drive = info.drive; drive && drive->ramp && options.cycles == 0)
@@ -205,10 +204,10 @@ Used add_frames(const TrajectorySource& trajectory, const AnalysisContext& conte
 /// \throws ConfigError if the chosen cycles have no frame or are fewer than requested
 void require_used(const Used& used, const TrajectorySource& trajectory, const AnalysisOptions& options) {
   if (used.frames == 0)
-    throw ConfigError({.file = trajectory.name(), .key = "discard"},
+    throw ConfigError({.file = trajectory.name(), .key = "--discard"},
                       "leaving out " + plural(options.discard_cycles, "cycle") + " leaves no frame");
   if (used.cycles < options.cycles)
-    throw ConfigError({.file = trajectory.name(), .key = "cycles"},
+    throw ConfigError({.file = trajectory.name(), .key = "--cycles"},
                       fmt::format("{} {} requested, but the trajectory has {}{}",
                                   plural(options.cycles, "cycle"), options.cycles == 1 ? "was" : "were",
                                   used.cycles, options.discard_cycles > 0 ? " after the skipped ones" : ""));
@@ -233,79 +232,6 @@ std::vector<Result> requested_results(const std::vector<ChosenObservable>& chose
 
 }  // namespace
 
-double neighbour_cutoff(const TrajectoryInfo& info, const AnalysisOptions& options) {
-  return options.neighbour_cutoff.value_or(info.source == "experiment" ? 1.3 : 1.2);
-}
-
-bool AnalysisOptions::wants(const std::string& name) const {
-  return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
-}
-
-double Result::value() const {
-  if (!present() || values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  return values.front();
-}
-
-Result absent_result(const std::string& name, const std::string& reason, const std::string& source) {
-  Result r{.name = name};
-  r.absent = reason;
-  r.source = source;
-  return r;
-}
-
-Result mean_of(const SeriesAverage& series, Result r, const std::string& why_absent) {
-  if (series.n() == 0) return absent_result(r.name, why_absent, r.source);
-  r.values = {series.mean()};
-  r.n = series.n();
-  r.interval = series.interval(r.n_of);
-  if (!r.interval && r.no_interval.empty()) r.no_interval = series.why_no_interval(r.n_of);
-  return r;
-}
-
-Result array_of(const std::vector<double>& values, Result r, const std::string& why_absent) {
-  r.n = static_cast<std::size_t>(
-      std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); }));
-  if (r.n == 0) return absent_result(r.name, why_absent, r.source);
-  r.values = values;
-  r.shape = {values.size()};
-  return r;
-}
-
-SbForm s_b_named(const std::string& name) {
-  return row_named(kSbForms, name, "s_b", "form of s_b").value;
-}
-
-NeighbourRule neighbour_rule_named(const std::string& name) {
-  return row_named(kNeighbourRules, name, "neighbours", "rule for neighbours").value;
-}
-
-std::string neighbour_rule_text(const AnalysisContext& context) {
-  if (context.options.neighbours == NeighbourRule::cutoff)
-    return fmt::format("neighbours: centres within {:.4g} sigma", context.cutoff);
-  return fmt::format(
-      "neighbours: Voronoi cells within {:.4g} sigma that share an edge{}", context.options.cell_radius,
-      context.options.neighbours == NeighbourRule::voronoi ? ", bonds weighted by the length of that edge"
-                                                           : "");
-}
-
-const Neighbours& FrameView::neighbours() const {
-  if (context_.options.neighbours != NeighbourRule::cutoff) return cells().neighbours;
-  if (!neighbours_) neighbours_ = find_neighbours(frame_, context_.info.box, context_.cutoff);
-  return *neighbours_;
-}
-
-const BondOrder& FrameView::order() const {
-  if (!order_)
-    order_ = context_.options.neighbours == NeighbourRule::voronoi ? bond_order(neighbours(), cells().edge)
-                                                                   : bond_order(neighbours());
-  return *order_;
-}
-
-const VoronoiCells& FrameView::cells() const {
-  if (!cells_) cells_ = voronoi_cells(frame_, context_.info.box, context_.options.cell_radius);
-  return *cells_;
-}
-
 std::vector<std::string> result_names() {
   std::vector<std::string> names;
   for (const ObservableEntry* entry : entries())
@@ -313,40 +239,11 @@ std::vector<std::string> result_names() {
   return names;
 }
 
-Result cut_interval(Result r) {
-  const Range range = named_result(r.name).range;
-  if (!r.interval || range == Range::any) return r;
-  if (r.value() >= 0) r.interval->low = std::max(0.0, r.interval->low);
-  if (range == Range::share && r.value() <= 1) r.interval->high = std::min(1.0, r.interval->high);
-  return r;
-}
-
-Interval uncut_interval(const Result& r) {
-  const Range range = named_result(r.name).range;
-  Interval interval = *r.interval;
-  if (range != Range::any && interval.low == 0 && r.value() > 0) interval.low = 2 * r.value() - interval.high;
-  if (range == Range::share && interval.high == 1 && r.value() < 1)
-    interval.high = 2 * r.value() - interval.low;
-  return interval;
-}
-
 NamedResult named_result(std::string_view name) {
   for (const ObservableEntry* entry : entries())
     for (const NamedResult& result : entry->results)
       if (result.name == name) return result;
   return {name};
-}
-
-const Result* seek_result(const std::vector<Result>& results, const std::string& name) {
-  const auto found =
-      std::find_if(results.begin(), results.end(), [&](const Result& r) { return r.name == name; });
-  return found != results.end() ? &*found : nullptr;
-}
-
-const Result& find_result(const std::vector<Result>& results, const std::string& name) {
-  const Result* found = seek_result(results, name);
-  assert(found != nullptr);
-  return *found;
 }
 
 std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOptions& options,

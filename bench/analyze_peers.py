@@ -60,10 +60,10 @@ def q6(frames):
 
 def g_r(frames):
     """Distance of the largest bin."""
-    edges = np.arange(0, RANGE + WIDTH / 2, WIDTH)
+    edges = np.arange(WIDTH / 2, RANGE + WIDTH, WIDTH)  # around multiples of the width
     found = np.zeros(len(edges) - 1)
     for r in frames:
-        pairs = scipy.spatial.cKDTree(r).query_pairs(RANGE, output_type="ndarray")
+        pairs = scipy.spatial.cKDTree(r).query_pairs(edges[-1], output_type="ndarray")
         d = r[pairs[:, 0]] - r[pairs[:, 1]]
         found += np.histogram(np.hypot(d[:, 0], d[:, 1]), edges)[0]
     g = found / (edges[1:] ** 2 - edges[:-1] ** 2)

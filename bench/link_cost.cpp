@@ -71,18 +71,18 @@ int main(int argc, char** argv) {
     std::ofstream out;
     if (r == 0) out.open(path + ".ids", std::ios::binary);
     imaging::Linker linker(options, phases);
-    const double begun = processor_seconds();
+    const double begun = process_cpu_seconds();
     linker.begin(imaging::initial_velocities(options, phases, frames.size(), [&](std::size_t f) {
       return imaging::FrameOfBeads{frames[f], {}, time_of(f)};
     }));
-    double seconds = processor_seconds() - begun;
+    double seconds = process_cpu_seconds() - begun;
     for (std::size_t f = 0; f < frames.size(); ++f) {
       const bool more = f + 1 < frames.size();
       const imaging::FrameAhead ahead =
           more ? imaging::FrameAhead{frames[f + 1], time_of(f + 1), {}} : imaging::FrameAhead{};
-      const double start = processor_seconds();
+      const double start = process_cpu_seconds();
       const std::vector<std::int64_t> ids = linker.next(frames[f], time_of(f), {}, more ? &ahead : nullptr);
-      seconds += processor_seconds() - start;
+      seconds += process_cpu_seconds() - start;
       if (r > 0) continue;
       for (std::size_t k = 0; k < ids.size(); ++k) {
         const std::int64_t record[2] = {ids[k], linker.ambiguous()[k]};

@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
   std::vector<double> q6;
   for (int r = 0; r < repetitions; ++r) {
     q6.clear();
-    const double start = cpu_seconds();
+    const double start = thread_cpu_seconds();
     for (const Frame& frame : frames) {
       analysis::BondOrder order;
       if (rule == "cutoff") {
@@ -58,7 +58,7 @@ int main(int argc, char** argv) {
       }
       q6.insert(q6.end(), order.q6.begin(), order.q6.end());
     }
-    best = std::min(best, cpu_seconds() - start);
+    best = std::min(best, thread_cpu_seconds() - start);
   }
   std::ofstream out(path + "." + rule + ".q6", std::ios::binary);
   out.write(reinterpret_cast<const char*>(q6.data()),

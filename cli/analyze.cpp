@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "analysis/motion/centre_of_mass.hpp"
 #include "analysis/observable/observable.hpp"
 #include "analysis/observable/results.hpp"
+#include "analysis/observable/short_periods.hpp"
 #include "analysis/observable/timed_analysis.hpp"
 #include "analysis/report/spatial_figures.hpp"
 #include "analysis/report/windows_figure.hpp"
@@ -83,7 +85,10 @@ void require_same_bed(const H5mdReader& rest, const std::vector<std::string>& ru
 /// \param runs trajectories whose beds it is the reference of
 double rest_height_of(const std::string& said, const std::vector<std::string>& runs) {
   double number = 0;
-  if (CLI::detail::lexical_cast(said, number)) return number;
+  const bool has_plus = said.starts_with('+') && !said.starts_with("+-");  // which from_chars does not read
+  const char *begin = said.data() + (has_plus ? 1 : 0), *end = said.data() + said.size();
+  if (const auto [last, error] = std::from_chars(begin, end, number); error == std::errc() && last == end)
+    return number;
   const H5mdReader trajectory(said);
   require_same_bed(trajectory, runs);
   double sum = 0, low = INFINITY, high = -INFINITY;
@@ -194,17 +199,8 @@ void note_cutoff(const Common& common, const TrajectorySource& trajectory,
 /// A note on periods in which a bead meets several images of a neighbour, of which one counts.
 void note_periods(const Common& common, const TrajectorySource& trajectory,
                   const analysis::AnalysisOptions& options) {
-  const Box& box = trajectory.info().box;
-  const double cutoff = analysis::neighbour_cutoff(trajectory.info(), options),
-               reach = box.dimension == 2 ? std::max(cutoff, 2 * options.cell_radius) : cutoff;
-  for (const Axis axis : {Axis::x, Axis::y, Axis::z})
-    if (const double period = box.size()[static_cast<int>(axis)]; box.periodic(axis) && period < 2 * reach)
-      note(common,
-           fmt::format(
-               "{}: the period along {}, {:g} sigma, is shorter than twice the reach of a neighbour, {:g} "
-               "sigma; one image of each bead counts, so that order, contact numbers and Voronoi cells are "
-               "not those of the periodic bed.",
-               trajectory.name(), "xyz"[static_cast<int>(axis)], period, reach));
+  for (const std::string& sentence : analysis::short_periods(trajectory.info(), options))
+    note(common, fmt::format("{}: {}.", trajectory.name(), sentence));
 }
 
 /// Analyses a run in windows. The results go to a table, if one is requested.

@@ -26,6 +26,7 @@ struct CalibrateFlags {
   double diameter_px = 0;
   bool bright = false;
 };
+/// Adds the stack, --cell, --diameter and --bright, and what add_output_flags adds.
 void add_stack_flags(CLI::App& verb, Common& common, CalibrateFlags& flags);
 /// Adds -o and --figures.
 void add_output_flags(CLI::App& verb, Common& common, CalibrateFlags& flags);
@@ -33,8 +34,8 @@ void add_output_flags(CLI::App& verb, Common& common, CalibrateFlags& flags);
 /// The cell description of --cell, or an empty one without --cell.
 imaging::CellDescription cell_of(const CalibrateFlags& flags);
 
-/// The geometry of the cell, fitted to the edges in the stack. \param edges output: the edges, and the bead
-/// diameter with which they were read
+/// The geometry of the cell, fitted to the edges in the stack.
+/// \param edges output: the edges, and the bead diameter with which they were read
 calibration::CellGeometry geometry_of(const CalibrateFlags& flags, const imaging::CellDescription& cell,
                                       const Common& common, calibration::StackEdges& edges);
 

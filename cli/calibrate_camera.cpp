@@ -50,7 +50,10 @@ void add_target(const CameraCalibration& o, nlohmann::json& d, std::string& text
   if (o.grid.size() != 2)
     throw ConfigError({.file = {}, .key = "--target-grid"},
                       "is missing; give the numbers of points along x and y, for example 9 6.");
-  const imaging::TargetPattern pattern{.kind = o.kind, .columns = o.grid[0], .rows = o.grid[1]};
+  const imaging::TargetPattern pattern{
+      .kind = row_named(imaging::kTargetKinds, o.kind, "--target-kind", "target").value,
+      .columns = o.grid[0],
+      .rows = o.grid[1]};
   const auto points = imaging::find_target(picture, pattern);
   if (points.empty())
     throw InputError({.file = o.target, .key = {}}, fmt::format("shows no complete {} of {} x {} points.",
@@ -305,7 +308,7 @@ void add_calibrate_camera(CLI::App& calibrate, Common& common) {
   verb.add_option("--target", o->target,
                   "Picture of a chessboard or of a grid of dots, to measure the tilt of the camera");
   verb.add_option("--target-kind", o->kind, "Pattern of --target: chessboard (default) or dots")
-      ->check(CLI::IsMember({"chessboard", "dots"}));
+      ->check(CLI::IsMember(words_of(imaging::kTargetKinds)));
   verb.add_option("--target-grid", o->grid, "Number of inner corners, or dots, of --target along x and y")
       ->expected(2)
       ->delimiter(',');

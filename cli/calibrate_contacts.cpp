@@ -187,7 +187,7 @@ void run_collisions(const CollisionFlags& o, const Common& common) {
   } catch (const InputError& e) {
     throw InputError({.file = o.trajectory, .key = {}},
                      fmt::format("{} ({} pairs collided between frames, {} of them with a third body)",
-                                 e.what(), found.pairs, found.crowded));
+                                 without_full_stop(e.what()), found.pairs, found.crowded));
   }
   CalibrationResult out;
   out.notes = fit.notes;

@@ -35,11 +35,13 @@ void add_comparing_flags(CLI::App& verb, ComparingFlags& flags);
 /// \throws ConfigError, InputError
 twin::ComparingOptions comparing_options(const ComparingFlags& flags, const Common& common);
 
-/// Compares the runs and prints the notes. \throws as compare_runs
+/// Compares the runs and prints the notes.
+/// \throws as compare_runs
 analysis::Comparison compare_sides(const Common& common, const twin::ComparingOptions& options);
 
-/// Writes the report of a comparison into `folder` and prints the result. \param result, result_text results
-/// of the verb itself, printed after those of the comparison, as JSON and as text
+/// Writes the report of a comparison into `folder` and prints the result.
+/// \param result, result_text results of the verb itself, printed after those of the comparison, as JSON and
+/// as text
 void report_comparison(const Common& common, const twin::ComparingOptions& options,
                        const analysis::Comparison& comparison, const std::filesystem::path& folder,
                        nlohmann::json result, const std::string& result_text);

@@ -7,7 +7,6 @@
 
 #include "cli/command_table.hpp"
 #include "cli/verb.hpp"
-#include "core/escape.hpp"
 
 namespace twincell::cli {
 

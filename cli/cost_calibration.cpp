@@ -9,7 +9,6 @@
 #include "analysis/report/figure_style.hpp"
 #include "analysis/report/gnuplot_text.hpp"
 #include "calibration/accuracy/calibration_cost.hpp"
-#include "cli/calibrate.hpp"
 #include "core/json_text.hpp"
 
 namespace twincell::cli {

@@ -15,7 +15,8 @@ namespace twincell::cli {
 
 struct Common;
 
-/// Adds --device to a verb. \returns the option
+/// Adds --device to a verb.
+/// \returns the option
 CLI::Option* add_device_option(CLI::App& verb, std::string& device);
 
 /// Where the beds are computed, and how many at once.

@@ -190,8 +190,10 @@ void add_file_options(CLI::App& verb, Common& common, ImportOptions& o) {
     }
   verb.add_option(
           "--format", o.format,
-          fmt::format("Format (docs/formats.md). {}. Default: by the ending of the name, else lammps-dump",
-                      formats))
+          fmt::format(
+              "Format (docs/formats.md). {}. Default: by the ending of the name, or lammps-dump if the "
+              "file begins with 'ITEM:'",
+              formats))
       ->check(CLI::IsMember(words))
       ->option_text("WORD");
   verb.add_option(

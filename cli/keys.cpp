@@ -22,11 +22,6 @@ std::array<const KeyTable*, 4> tables() {
   return {&imaging::cell_keys(), &sim::scene_keys(), &sweep::plan_keys(), &imaging::camera_keys()};
 }
 
-std::string range_of(const std::map<std::string, KeyRule>& rules, const std::string& key) {
-  const auto rule = rules.find(key);
-  return rule == rules.end() ? "" : rule->second.range();
-}
-
 nlohmann::json json_of(const KeyTable& table) {
   const auto rules = rules_of(table);
   nlohmann::json list = nlohmann::json::array();

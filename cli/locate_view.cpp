@@ -76,7 +76,7 @@ imaging::FoundSettings settings_of(const imaging::LocatorOptions& options) {
 /// The limits of the judge, as locate_stages applies them.
 json judge_json(const imaging::LocatorOptions& o) {
   const bool profile = imaging::model_of(o.refine) == imaging::DiscModel::shared_profile;
-  return {{"radius_tolerance", o.judge.radius_tolerance},
+  return {{"radius_tolerance", imaging::kRadiusTolerance},
           {"min_interior", profile ? json(nullptr) : json(o.judge.min_interior)},
           {"min_score", o.judge.min_score},
           {"max_overlap", o.judge.max_overlap},

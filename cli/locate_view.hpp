@@ -29,16 +29,20 @@ class LocateView {
  public:
   static constexpr std::size_t kMaxFrames = 12;
 
-  /// \pre `region` outlives this \param locator complete options of the run \param choice the settings tried
+  /// \pre `region` outlives this
+  /// \param locator complete options of the run
+  /// \param choice the settings tried
   LocateView(const imaging::LocatingRequest& request, const imaging::Region& region,
              const imaging::LocatorOptions& locator, const imaging::SettingsChoice& choice);
 
   /// Adds a frame; does nothing after kMaxFrames.
-  /// \param grey the region as it was located \param located by the run, in px of the whole picture
+  /// \param grey the region as it was located
+  /// \param located by the run, in px of the whole picture
   void add(std::int64_t number, const cv::Mat& grey, const imaging::Located& located);
 
   /// The page, which refers to no other file.
-  /// \param stack, output names of the command \param frames number of frames of the run
+  /// \param stack, output names of the command
+  /// \param frames number of frames of the run
   [[nodiscard]] std::string page(const std::string& stack, const std::string& output,
                                  std::int64_t frames) const;
 
@@ -54,8 +58,8 @@ class LocateView {
   const imaging::Region& region_;
   imaging::SettingsChoice choice_;
   std::vector<Stored> stored_;  ///< that of the run first
-  std::vector<std::size_t>
-      index_of_;  ///< for each of the settings tried, its index in stored_; else its size
+  /// For each of the settings tried, its index in stored_; else its size.
+  std::vector<std::size_t> index_of_;
   nlohmann::json pictures_ = nlohmann::json::array();
   std::size_t beads_ = 0, dropped_ = 0;
 };

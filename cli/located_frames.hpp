@@ -49,7 +49,9 @@ class LocatedFrames {
   LocatedFrames(const std::string& beads, const std::string& candidates, std::optional<TruthOfFrames> truth,
                 const imaging::ScoredRows& rows);
 
-  /// Adds a frame. \param frame its number in the stack \param located in px of the whole picture
+  /// Adds a frame.
+  /// \param frame its number in the stack
+  /// \param located in px of the whole picture
   void add(std::int64_t frame, const imaging::Located& located);
   /// Lets the tables appear.
   void commit();

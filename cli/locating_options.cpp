@@ -25,7 +25,7 @@ void add_locating_options(CLI::App& verb, imaging::LocatingRequest& request) {
                   "Method that finds candidates for beads; default: vote")
       ->check(CLI::IsMember(imaging::finder_names()));
   verb.add_option("--min-score", request.locator.find.min_score,
-                  "Smallest share of the edge of a circle that must be visible, 0 to 1; default: 0.04");
+                  "Smallest share of the edge of a circle that must be visible, 0.01 to 1; default: 0.04");
   verb.add_option("--min-explained", request.locator.judge.min_score,
                   "Smallest score of a bead, 0 to 1: share of the variance around its edge that the disc "
                   "explains; default: 0.5");

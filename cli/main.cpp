@@ -260,8 +260,7 @@ int run(int argc, char** argv) {
   program.formatter(wrapped_help());  // before the verbs, which inherit it
   program.footer(
       "Exit codes: 0 done, 1 failed while running, 2 error in usage or configuration, 3 input unreadable\n"
-      "or malformed, 4 finished but a quality gate failed, 5 partial result that can be resumed,\n"
-      "130/143 stopped by a signal.");
+      "or malformed, 5 partial result that can be resumed, 130/143 stopped by a signal.");
   for (const AddVerb add : kVerbs) add(program, common);
   check_numbers(program);
 

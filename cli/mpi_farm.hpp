@@ -24,8 +24,8 @@ class MpiJob {
 
 /// Rank 0 has the schedule, distributes the points, stores their results, and also computes points itself.
 /// The other ranks compute the points that they receive. An error on any rank ends the whole job with one
-/// sentence and the exit code of the error; finished points are kept. \param schedule of rank 0; null on the
-/// other ranks
+/// sentence and the exit code of the error; finished points are kept.
+/// \param schedule of rank 0; null on the other ranks
 void run_on_ranks(sweep::Schedule* schedule, const sweep::Plan& plan, const sweep::Store& store,
                   bool keep_trajectories, SweepWatch& watch);
 

@@ -8,8 +8,8 @@
 
 namespace twincell::cli {
 
-/// Names of columns by quantity. \throws ConfigError for a word that is not QUANTITY=NAME, or a quantity
-/// named twice
+/// Names of columns by quantity.
+/// \throws ConfigError for a word that is not QUANTITY=NAME, or a quantity named twice
 std::map<std::string, std::string> named_columns(const std::vector<std::string>& words);
 
 }  // namespace twincell::cli

@@ -11,7 +11,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "cli/comparing_options.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"

@@ -76,10 +76,10 @@ class OptionHeading {
 /// details in any case.
 void has_details(CLI::App& verb, const std::string& what);
 
-/// Declares a former spelling of an option, without a line in the help. \param former as for CLI11:
-/// "--omega",
-/// "-o,--output" \param present what to write instead; a command that uses the former spelling ends with a
-/// ConfigError that names it
+/// Declares a former spelling of an option, without a line in the help.
+/// \param former as for CLI11: "--omega", "-o,--output"
+/// \param present what to write instead; a command that uses the former spelling ends with a ConfigError that
+/// names it
 void former_option(CLI::App& verb, const std::string& former, const std::string& present);
 
 /// type_name() of an option whose value is a word of this program or a column of a table. Such a value is
@@ -96,8 +96,8 @@ CLI::Option* writes(Common& common, CLI::App& verb, CLI::Option* option, Product
 /// verb is standard output. A reader that has stopped reading, such as head, is not an error.
 void print_result(const Common& common, const nlohmann::json& document, const std::string& text);
 /// Registers the files that an input names, such as the start of a scene, as inputs too, and refuses an
-/// output of the verb that is one of them. Call it before the work. Empty paths are ignored. \throws
-/// ConfigError as require_output
+/// output of the verb that is one of them. Call it before the work. Empty paths are ignored.
+/// \throws ConfigError as require_output
 void protect_named_inputs(const Common& common, const std::vector<std::filesystem::path>& files);
 /// Prints a note or warning on stderr ("note: …"), unless --quiet is set.
 void note(const Common& common, const std::string& text);

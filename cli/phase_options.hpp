@@ -17,8 +17,9 @@ namespace twincell::cli {
 /// Adds --phase-lock and --drive-hz.
 void add_phase_options(CLI::App& verb, imaging::PhaseRequest& request);
 
-/// The phases of a stack for the user, as one line of text and as JSON.
+/// The phases of a stack for the user, in one line of text.
 std::string phases_in_words(const imaging::PhaseTable& phases);
+/// The same as JSON.
 nlohmann::json json_of(const imaging::PhaseTable& phases);
 
 }  // namespace twincell::cli

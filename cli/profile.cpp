@@ -69,7 +69,7 @@ void Profile::state(const std::string& name, std::int64_t value) {
 
 void Profile::add_to(nlohmann::json& document, std::string& text, int threads) const {
   if (!wanted_) return;
-  const double processor = processor_seconds() - processor_;
+  const double processor = process_cpu_seconds() - processor_;
   std::vector<StageTimes::Row> rows = times_.rows();
   double elapsed = 0;
   for (const StageTimes::Row& row : rows) elapsed += row.seconds;

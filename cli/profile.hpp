@@ -34,14 +34,15 @@ class Profile {
   /// A number that explains the times, such as visited pairs. Printed below the table.
   void state(const std::string& name, std::int64_t value);
   /// Adds the key "profile" to the document and the table to the text. Does nothing if no profile is wanted.
-  /// Measures the bandwidth of memory if a stage counted bytes. \param threads that the verb used
+  /// Measures the bandwidth of memory if a stage counted bytes.
+  /// \param threads that the verb used
   void add_to(nlohmann::json& document, std::string& text, int threads) const;
 
  private:
   bool wanted_;
   StageTimes times_;
   std::vector<StageTimes::Row> sum_;
-  double processor_ = processor_seconds();
+  double processor_ = process_cpu_seconds();
   nlohmann::ordered_json counters_ = nlohmann::ordered_json::object();
 };
 

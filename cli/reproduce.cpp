@@ -53,7 +53,7 @@ const Reproducible& named(const std::string& name) {
   if (found != all.end()) return *found;
   std::vector<std::string> names;
   for (const Reproducible& r : all) names.push_back(r.name);
-  throw ConfigError({"", 0, 0, "reproduce"},
+  throw ConfigError({.file = {}, .key = "reproduce"},
                     fmt::format("'{}' is not one of {}.", name, fmt::join(names, ", ")));
 }
 
@@ -101,8 +101,10 @@ nlohmann::json as_json(const Reproduction& r, const fs::path& folder) {
                             {"runs", t.runs},
                             {"verdict", word_of(t.verdict)},
                             {"reason", t.reason}});
-    if (!t.counted_in.empty()) j["targets"].back()["counted_in"] = t.counted_in;
+    if (!t.not_counted.empty()) j["targets"].back()["not_counted"] = t.not_counted;
   }
+  for (const analysis::Figure& figure : r.figures)
+    j["figures"].push_back({{"name", figure.name}, {"caption", figure.caption}});
   return j;
 }
 
@@ -131,13 +133,13 @@ std::pair<nlohmann::json, std::string> make(const Reproducible& what, const Repr
   if (!from.empty()) {
     if (!what.judges_stored)
       throw ConfigError(
-          {"", 0, 0, "stored"},
+          {.file = {}, .key = "--stored"},
           fmt::format("does not work for {}, whose runs take seconds: run it again.", what.name));
     stored = stored_document(from);
   }
   const Workers workers = what.on_device ? on_device : workers_of("", common);
   claim_shared_folder(folder, Product::runs());
-  const double begin = processor_seconds();
+  const double begin = process_cpu_seconds();
   SweepWatch watch(common, share.seconds);
   Reproduction r;
   try {
@@ -156,7 +158,7 @@ std::pair<nlohmann::json, std::string> make(const Reproducible& what, const Repr
     if (!stored) throw;
     throw InputError({from.string(), 0, 0, ""}, fmt::format("does not hold the runs of {}.", what.name));
   }
-  double core_minutes = watch.runs_seconds().value_or(processor_seconds() - begin) / 60;
+  double core_minutes = watch.runs_seconds().value_or(process_cpu_seconds() - begin) / 60;
   if (stored) {
     // What was run is what the document says; its verdicts and figures alone are new.
     const auto keep = [&](const char* key, auto& member) {
@@ -195,20 +197,21 @@ void run_one(const ReproduceOptions& options, const Common& common) {
   const fs::path folder = options.output.empty() ? options.name : options.output;
   if ((options.window || !options.data.empty()) && !what.takes_data)
     throw ConfigError(
-        {"", 0, 0, options.window ? "window" : "data"},
+        {.file = {}, .key = options.window ? "--window" : "--data"},
         fmt::format(
             "has no effect on {}; only p1-fig3, p2-fig2, p2-table1 and p2-table2 compare with your own data.",
             options.name));
   if (options.window && !(options.window->first < options.window->second))
-    throw ConfigError({"", 0, 0, "window"},
+    throw ConfigError({.file = {}, .key = "--window"},
                       fmt::format("is {:g} to {:g}; the lower limit must be below the upper limit.",
                                   options.window->first, options.window->second));
   if (!options.device.empty() && !what.on_device) {
     std::vector<std::string> names;
     for (const Reproducible& r : reproduce::list())
       if (r.on_device) names.push_back(r.name);
-    throw ConfigError({"", 0, 0, "device"}, fmt::format("has no effect on {}; the beds of {} can run on one.",
-                                                        options.name, fmt::join(names, ", ")));
+    throw ConfigError({.file = {}, .key = "--device"},
+                      fmt::format("has no effect on {}; the beds of {} can run on one.", options.name,
+                                  fmt::join(names, ", ")));
   }
   const double minutes = options.budget.value_or(kDefaultMinutes);
   const auto [document, text] =
@@ -235,10 +238,11 @@ std::map<std::string, Share> shares_of(double minutes, bool full) {
 void run_all(const ReproduceOptions& options, const Common& common) {
   const fs::path folder = options.output.empty() ? "papers" : options.output;
   if (options.window || !options.data.empty())
-    throw ConfigError({"", 0, 0, options.window ? "window" : "data"}, "has no effect with --all.");
+    throw ConfigError({.file = {}, .key = options.window ? "--window" : "--data"},
+                      "has no effect with --all.");
   if (!options.stored.empty() && !fs::is_directory(options.stored))
     throw ConfigError(
-        {"", 0, 0, "stored"},
+        {.file = {}, .key = "--stored"},
         fmt::format("is {}; with --all it must be a folder of NAME.json files.", options.stored));
   const Workers on_device = workers_of(options.device, common);  // before the folder is made
   claim_shared_folder(folder, Product::runs());
@@ -272,7 +276,7 @@ void run_all(const ReproduceOptions& options, const Common& common) {
     nlohmann::json& counts = summary["figures"][what.name];
     for (const auto& verdict : reproduce::kVerdicts) counts[std::string(verdict.word)] = 0;
     for (const auto& t : document["targets"]) {
-      if (!t.value("counted_in", "").empty()) continue;
+      if (!t.value("not_counted", "").empty()) continue;
       nlohmann::json& n = counts[t["verdict"].get<std::string>()];
       n = n.is_null() ? 1 : n.get<int>() + 1;
     }
@@ -291,9 +295,9 @@ void run_all(const ReproduceOptions& options, const Common& common) {
 
 void run(const ReproduceOptions& options, const Common& common) {
   if (options.all == !options.name.empty())
-    throw ConfigError({"", 0, 0, "reproduce"}, options.all
-                                                   ? "takes a name or --all, not both."
-                                                   : "needs the name of a figure or table, or --all.");
+    throw ConfigError(
+        {.file = {}, .key = "reproduce"},
+        options.all ? "takes a name or --all, not both." : "needs the name of a figure or table, or --all.");
   options.all ? run_all(options, common) : run_one(options, common);
 }
 

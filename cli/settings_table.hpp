@@ -16,16 +16,18 @@ namespace twincell::cli {
 /// were chosen, those that were refused, with the reasons.
 std::string settings_table(const imaging::SettingsChoice& choice, const std::string& refine);
 
-/// By how much the chosen settings won over the best ones with other discs, in a sentence. \pre choice.tried
-/// is not empty
+/// By how much the chosen settings won over the best ones with other discs, in a sentence.
+/// \pre choice.tried is not empty
 std::string settings_lead(const imaging::SettingsChoice& choice, const std::string& refine);
 
 /// imaging::settings_doubts, one a line. Empty if there is no reason for doubt.
 std::string settings_warnings(const imaging::SettingsChoice& choice, const std::string& refine);
 
 /// What was found in the frames, in sentences that name the options: diameters, model, contrast and polarity.
-/// \param given what the user gave \param locator complete options \param frame number of the frame that
-/// showed the settings \param evidence table or warnings, placed after the diameters
+/// \param given what the user gave
+/// \param locator complete options
+/// \param frame number of the frame that showed the settings
+/// \param evidence table or warnings, placed after the diameters
 std::string found_settings_text(const imaging::LocatorOptions& given, const imaging::LocatorOptions& locator,
                                 std::int64_t frame, const std::string& evidence);
 

@@ -26,7 +26,6 @@
 #include "sim/scene/read_scene.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "trajectory/formats/h5md_file.hpp"
-#include "trajectory/unit_checks.hpp"
 
 namespace twincell::cli {
 
@@ -82,6 +81,13 @@ class SavingProgress : public Progress {
   Clock::time_point saved_ = Clock::now();
 };
 
+/// How the drive begins.
+const char* drive_at_start(const sim::Scene& s) {
+  if (s.in_motion) return "goes on";
+  if (!s.envelope.points.empty()) return "ramp or schedule";
+  return s.comoving ? "comoving" : "abrupt";
+}
+
 /// The start of the bed, for the result. Near a transition, beds with the same drive but different starts can
 /// differ for hundreds of cycles.
 nlohmann::json start_of(const sim::Scene& s) {
@@ -89,10 +95,7 @@ nlohmann::json start_of(const sim::Scene& s) {
                           {"seed", s.seed},
                           {"perturbation", s.perturbation},
                           {"in_motion", s.in_motion},
-                          {"drive", s.in_motion                  ? "goes on"
-                                    : !s.envelope.points.empty() ? "ramp or schedule"
-                                    : s.comoving                 ? "comoving"
-                                                                 : "abrupt"}};
+                          {"drive", drive_at_start(s)}};
   if (!s.from.empty()) start["from"] = s.from.string();
   return start;
 }
@@ -109,77 +112,88 @@ nlohmann::json ramp_of(const sim::Scene& s) {
   return ramp;
 }
 
-nlohmann::json describe(const sim::Simulation& run, const std::string& output, std::int64_t begun_at,
-                        double seconds) {
+/// A run that has ended.
+struct FinishedRun {
+  const sim::Simulation& run;
+  sim::Plan plan;  ///< with the error of its step
+  std::string output;
+  std::int64_t begun_at = 0;  ///< step of the drive; 0: at its beginning
+  double seconds = 0;
+
+  [[nodiscard]] double particle_steps_per_second() const {
+    return seconds > 0 ? static_cast<double>(run.steps_done()) *
+                             static_cast<double>(run.system().beads.size()) / seconds
+                       : 0;
+  }
+};
+
+nlohmann::json describe(const FinishedRun& ended) {
+  const sim::Simulation& run = ended.run;
   const sim::Scene& s = run.scene();
-  const double steps = static_cast<double>(run.steps_done()),
-               n = static_cast<double>(run.system().beads.size());
-  nlohmann::json d = {{"output", output},
-                      {"beads", run.system().beads.size()},
-                      {"gamma", s.g() > 0 ? nlohmann::json(s.drive.gamma()) : nlohmann::json()},
-                      {"k_m", s.g() > 0 ? nlohmann::json(s.drive.k_m()) : nlohmann::json()},
-                      {"amplitude", s.drive.amplitude},
-                      {"omega", s.drive.omega},
-                      {"displacement", s.drive.formula()},
-                      {"ramp", ramp_of(s)},
-                      {"cycles", s.cycles},
-                      {"discarded", s.discard},
-                      {"continued_from_step", begun_at > 0 ? nlohmann::json(begun_at) : nlohmann::json()},
-                      {"settled",
-                       {{"time", run.settled().time},
-                        {"energy_per_bead", run.settled().energy_per_bead},
-                        {"reached", run.settled().reached}}},
-                      {"start", start_of(s)},
-                      {"list_builds", run.list_builds()},
-                      {"seconds", seconds},
-                      {"particle_steps_per_second", seconds > 0 ? steps * n / seconds : 0}};
-  sim::Plan plan = run.plan();
-  sim::state_step_error(s, plan);
-  d.update(plan_as_json(plan));
+  nlohmann::json d = {
+      {"output", ended.output},
+      {"beads", run.system().beads.size()},
+      {"gamma", s.g() > 0 ? nlohmann::json(s.drive.gamma()) : nlohmann::json()},
+      {"k_m", s.g() > 0 ? nlohmann::json(s.drive.k_m()) : nlohmann::json()},
+      {"amplitude", s.drive.amplitude},
+      {"omega", s.drive.omega},
+      {"displacement", s.drive.formula()},
+      {"ramp", ramp_of(s)},
+      {"cycles", s.cycles},
+      {"discarded", s.discard},
+      {"continued_from_step", ended.begun_at > 0 ? nlohmann::json(ended.begun_at) : nlohmann::json()},
+      {"settled",
+       {{"time", run.settled().time},
+        {"energy_per_bead", run.settled().energy_per_bead},
+        {"reached", run.settled().reached}}},
+      {"start", start_of(s)},
+      {"list_builds", run.list_builds()},
+      {"seconds", ended.seconds},
+      {"particle_steps_per_second", ended.particle_steps_per_second()}};
+  d.update(plan_as_json(ended.plan));
   if (const auto fraction = run.contact_fraction()) d["contact_fraction"] = *fraction;
   return d;
 }
 
-std::string as_text(const nlohmann::json& d, bool verbose) {
-  std::string s =
-      fmt::format("{}, {}\n", plural(d["beads"].get<long>(), "bead"), d["kernel"].get<std::string>());
-  if (d["gamma"].is_number())
-    s += fmt::format("Gamma = {:.6g}, K_m = {:.6g}{}, displacement {}\n", d["gamma"].get<double>(),
-                     d["k_m"].get<double>(), d["ramp"].is_object() ? " before the ramp" : "",
-                     d["displacement"].get<std::string>());
-  if (d["ramp"].contains("gamma"))
+std::string as_text(const FinishedRun& ended, bool verbose) {
+  const sim::Simulation& run = ended.run;
+  const sim::Scene& scene = run.scene();
+  const sim::Plan& plan = ended.plan;
+  std::string s = fmt::format("{}, {}\n", plural(run.system().beads.size(), "bead"), plan.law_names());
+  if (scene.g() > 0)
+    s += fmt::format("Gamma = {:.6g}, K_m = {:.6g}{}, displacement {}\n", scene.drive.gamma(),
+                     scene.drive.k_m(), scene.drive.ramp ? " before the ramp" : "", scene.drive.formula());
+  if (scene.g() > 0 && scene.drive.ramp) {
+    const DriveLevel& to = scene.drive.ramp->to;
     s += fmt::format("Gamma = {:.6g} at the {} of the ramp, {} linear in time\n",
-                     d["ramp"]["gamma"].get<double>(), d["ramp"]["returns"].get<bool>() ? "turn" : "end",
-                     d["ramp"]["linear"].get<std::string>());
-  s += fmt::format("{} steps per period, dt = {:.6e} t0\n", d["steps_per_period"].get<long>(),
-                   d["dt"].get<double>());
-  const auto& start = d["start"];
-  s += fmt::format("start: {}, seed {}, drive {}\n", start["kind"].get<std::string>(),
-                   start["seed"].get<long>(), start["drive"].get<std::string>());
-  const auto& settled = d["settled"];
-  if (start["in_motion"].get<bool>())
+                     to.amplitude * to.omega * to.omega / scene.g(),
+                     scene.drive.ramp->returns ? "turn" : "end", scene.drive.ramp->linear_quantity());
+  }
+  s += fmt::format("{} steps per period, dt = {:.6e} t0\n", plan.steps_per_period, plan.dt);
+  s += fmt::format("start: {}, seed {}, drive {}\n", sim::start_row(scene.start).word, scene.seed,
+                   drive_at_start(scene));
+  if (scene.in_motion)
     s += "no settling: the start is in motion\n";
   else
-    s += fmt::format("settled in {:.4g} t0 to {:.3g} m g sigma per bead{}\n", settled["time"].get<double>(),
-                     settled["energy_per_bead"].get<double>(),
-                     settled["reached"].get<bool>() ? "" : " (stopped by start.settle_limit)");
-  if (!verbose) s += fmt::format("{} effects considered; -v, or explain, lists them\n", d["effects"].size());
-  for (const auto& e : verbose ? d["effects"] : nlohmann::json::array())
-    s += fmt::format("  {:<20} {:<13} {}\n", e["name"].get<std::string>(), e["state"].get<std::string>(),
-                     e["reason"].get<std::string>());
-  if (d.contains("contact_fraction"))
+    s += fmt::format("settled in {:.4g} t0 to {:.3g} m g sigma per bead{}\n", run.settled().time,
+                     run.settled().energy_per_bead,
+                     run.settled().reached ? "" : " (stopped by start.settle_limit)");
+  if (verbose)
+    for (const sim::Effect& e : plan.effects)
+      s += fmt::format("  {:<20} {:<13} {}\n", e.name, sim::word_of(e.state), e.reason);
+  else
+    s += fmt::format("{} effects considered; -v, or explain, lists them\n", plan.effects.size());
+  if (const auto fraction = run.contact_fraction())
     s += fmt::format(
-        "beads are in contact for {:.3g} of the time{}\n", d["contact_fraction"].get<double>(),
-        d["contact_fraction"].get<double>() > kHardBeads
+        "beads are in contact for {:.3g} of the time{}\n", *fraction,
+        *fraction > kHardBeads
             ? "; theories of hard beads, which assume instantaneous collisions, are not valid above 0.1"
             : "");
   s += fmt::format("{} after {} discarded, {:.3g} s, {:.3g} million particle-steps/s, {} built\n",
-                   plural(d["cycles"].get<long>(), "cycle"), d["discarded"].get<long>(),
-                   d["seconds"].get<double>(), 1e-6 * d["particle_steps_per_second"].get<double>(),
-                   plural(d["list_builds"].get<long>(), "neighbour list"));
-  if (d["continued_from_step"].is_number())
-    s += fmt::format("continued from step {} of a checkpoint\n", d["continued_from_step"].get<long>());
-  return s + d["output"].get<std::string>() + "\n";
+                   plural(scene.cycles, "cycle"), scene.discard, ended.seconds,
+                   1e-6 * ended.particle_steps_per_second(), plural(run.list_builds(), "neighbour list"));
+  if (ended.begun_at > 0) s += fmt::format("continued from step {} of a checkpoint\n", ended.begun_at);
+  return s + ended.output + "\n";
 }
 
 /// The work of the solver that explains its time.
@@ -347,9 +361,15 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
 
   const double seconds =
       run_and_write(run, options.output, start.provenance, folder, every_s, common, profile.times());
-  nlohmann::json document = describe(run, options.output, start.begun_at, seconds);
+  FinishedRun ended{.run = run,
+                    .plan = run.plan(),
+                    .output = options.output,
+                    .begun_at = start.begun_at,
+                    .seconds = seconds};
+  sim::state_step_error(run.scene(), ended.plan);
+  nlohmann::json document = describe(ended);
   document["warnings"] = warnings;
-  std::string text = as_text(document, common.verbose);
+  std::string text = as_text(ended, common.verbose);
   state_counters(run.solver(), profile);
   profile.add_to(document, text, sim::threads_for(run.system().beads.size(), common.threads));
   print_result(common, document, text);

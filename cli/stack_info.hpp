@@ -20,9 +20,10 @@ std::unique_ptr<imaging::FrameSource> open_stack(const std::filesystem::path& st
 /// the reader of trajectories refuses it with its own message.
 bool is_trajectory(const std::filesystem::path& file);
 
-/// Format, size, number of frames, bit depth, times, and grey values of the first frame. \throws InputError
-/// as open_frames()
+/// Format, size, number of frames, bit depth, times, and grey values of the first frame.
+/// \throws InputError as open_frames()
 nlohmann::json describe_stack(const std::filesystem::path& stack);
+/// The description of describe_stack() as lines of text.
 std::string stack_as_text(const nlohmann::json& description);
 
 }  // namespace twincell::cli

@@ -157,7 +157,7 @@ Product figures_folder() {
   return Product::shared_folder("the figures of a sweep");
 }
 
-/// Draws a result into `folder`. \return the path of the SVG
+/// Draws a result into `folder`. \returns the path of the SVG
 std::string draw_results(const sweep::Schedule& schedule, const sweep::FigureOptions& options,
                          const fs::path& folder) {
   const analysis::Figure figure = sweep::results_figure(collected_json(schedule), options);

@@ -17,7 +17,6 @@
 #include "cli/output.hpp"
 #include "cli/phase_options.hpp"
 #include "cli/profile.hpp"
-#include "cli/stack_info.hpp"
 #include "cli/truth_options.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"

@@ -22,6 +22,7 @@ struct TruthOptions {
   [[nodiscard]] imaging::ScoredRows rows() const;
 };
 
+/// Adds --truth and --scored-rows.
 void add_truth_options(CLI::App& verb, TruthOptions& options);
 
 }  // namespace twincell::cli

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Syncs a file, or the entries of a folder, to disk. \return 0, or the error number of an I/O error or a
+/// Syncs a file, or the entries of a folder, to disk. \returns 0, or the error number of an I/O error or a
 /// full disk. A file system without sync (some network file systems) counts as synced.
 int sync_to_disk(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);

@@ -12,6 +12,7 @@ namespace twincell {
 namespace stop_detail {
 extern std::atomic<int> asked_by;   ///< number of the signal; 0: no signal received
 extern std::atomic<int> finishing;  ///< number of live FinishFirst objects
+/// \throws Interrupted always, with the exit code of the signal
 [[noreturn]] void stop();
 }  // namespace stop_detail
 

@@ -38,7 +38,8 @@ std::string help_of(const Table& table) {
   return text;
 }
 
-/// The row of a value, for tables whose rows have a member `value`. \pre the table has such a row
+/// The row of a value, for tables whose rows have a member `value`.
+/// \pre the table has such a row
 template <class Table, class Value>
 constexpr const auto& row_of(const Table& table, Value value) {
   return *std::find_if(std::begin(table), std::end(table), [&](const auto& r) { return r.value == value; });
@@ -48,7 +49,8 @@ constexpr const auto& row_of(const Table& table, Value value) {
 [[noreturn]] void refuse_word(const std::string& key, const std::string& noun, const std::string& word,
                               const std::vector<std::string>& words);
 
-/// The row whose word is `word`. \throws ConfigError as refuse_word if there is no such row
+/// The row whose word is `word`.
+/// \throws ConfigError as refuse_word if there is no such row
 template <class Table>
 const auto& row_named(const Table& table, const std::string& word, const std::string& key,
                       const std::string& noun) {

@@ -22,15 +22,21 @@ inline constexpr std::uintmax_t kLargestConfig = std::uintmax_t{16} << 20;
 /// of the wrong type. Each query marks its key as known, even if the key is absent.
 class ConfigSection {
  public:
+  /// A number or an integer, finite.
   [[nodiscard]] std::optional<double> number(const std::string& key) const;
+  /// A whole number.
   [[nodiscard]] std::optional<std::int64_t> integer(const std::string& key) const;
+  /// true or false.
   [[nodiscard]] std::optional<bool> boolean(const std::string& key) const;
+  /// A text.
   [[nodiscard]] std::optional<std::string> text(const std::string& key) const;
   /// A number or an integer within bounds; `open_lower` excludes the lower bound.
   /// \throws ConfigError as require_range
   [[nodiscard]] std::optional<double> number_in(const std::string& key, std::optional<double> lower,
                                                 std::optional<double> upper = std::nullopt,
                                                 bool open_lower = false) const;
+  /// A whole number in [lower, upper].
+  /// \throws ConfigError as require_range
   [[nodiscard]] std::optional<std::int64_t> integer_in(const std::string& key, std::int64_t lower,
                                                        std::int64_t upper) const;
   /// A list of exactly `count` finite numbers.
@@ -39,7 +45,8 @@ class ConfigSection {
   [[nodiscard]] std::optional<std::vector<std::pair<double, double>>> pairs(const std::string& key) const;
   /// Whether the key is present and its value is a list, for keys that accept one number or several.
   [[nodiscard]] bool is_list(const std::string& key) const;
-  /// A text that is one of `words`. \throws ConfigError listing them otherwise
+  /// A text that is one of `words`.
+  /// \throws ConfigError listing them otherwise
   [[nodiscard]] std::optional<std::string> word(const std::string& key,
                                                 const std::vector<std::string>& words) const;
   /// The subtable `key`; an absent table is an empty section.
@@ -69,6 +76,9 @@ class Config {
   /// than kLargestConfig; ConfigError "file:line:column: …" if it is not TOML, or if tables and lists are
   /// nested more than 100 levels deep
   static Config from_file(const std::filesystem::path& path);
+  /// The configuration in a text.
+  /// \param name of its origin, for messages
+  /// \throws ConfigError as from_file
   static Config from_text(const std::string& text, const std::string& name);
 
   /// Merges `upper` into this configuration. Tables are merged; a key of `upper` replaces the same key here.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
 
 namespace twincell {
 
@@ -19,13 +20,29 @@ std::string sentence(const Where& where, const std::string& complaint) {
   const std::string place = where.text();
   return place.empty() ? complaint : place + ": " + complaint;
 }
+
+/// Whether a text ends as a sentence does, also with the stop within closing brackets. "…" marks a text that
+/// was cut.
+bool is_ended(std::string_view text) {
+  while (text.ends_with(')') || text.ends_with(']')) text.remove_suffix(1);
+  return text.empty() || std::string_view(".!?").find(text.back()) != std::string_view::npos ||
+         text.ends_with("…");
+}
 }  // namespace
+
+Error::Error(ExitCode code, const std::string& sentence)
+    : std::runtime_error(is_ended(sentence) ? sentence : sentence + '.'), code_(code) {}
 
 ConfigError::ConfigError(const Where& where, const std::string& complaint)
     : Error(ExitCode::usage, sentence(where, complaint)) {}
 
 InputError::InputError(const Where& where, const std::string& complaint)
     : Error(ExitCode::input, sentence(where, complaint)) {}
+
+std::string without_full_stop(std::string sentence) {
+  while (sentence.ends_with('.')) sentence.pop_back();
+  return sentence;
+}
 
 void require_range(const Where& where, double value, std::optional<double> lower, std::optional<double> upper,
                    bool open_lower) {

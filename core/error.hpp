@@ -15,7 +15,6 @@ enum class ExitCode : int {
   failed = 1,         ///< error during the run
   usage = 2,          ///< invalid command line or configuration
   input = 3,          ///< an input file is unreadable or malformed
-  gate = 4,           ///< finished, but a quality gate failed
   partial = 5,        ///< stopped early, can be resumed
   interrupted = 130,  ///< SIGINT
   terminated = 143,   ///< SIGTERM
@@ -32,10 +31,10 @@ struct Where {
   [[nodiscard]] std::string text() const;
 };
 
-/// Base class of all errors that are shown to the user.
+/// Base class of all errors that are shown to the user. A sentence that ends without a full stop gets one.
 class Error : public std::runtime_error {
  public:
-  Error(ExitCode code, const std::string& sentence) : std::runtime_error(sentence), code_(code) {}
+  Error(ExitCode code, const std::string& sentence);
   [[nodiscard]] ExitCode exit_code() const { return code_; }
 
  private:
@@ -67,6 +66,9 @@ class Interrupted : public Error {
       ExitCode code, const std::string& sentence = "Stopped by a signal; no unfinished file was left behind.")
       : Error(code, sentence) {}
 };
+
+/// A sentence without its full stop, to be continued or put in brackets.
+std::string without_full_stop(std::string sentence);
 
 /// Checks lower <= value <= upper. Either bound may be absent; `open_lower` excludes the lower one.
 /// \throws ConfigError if the value is out of range or not finite

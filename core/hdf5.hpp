@@ -26,6 +26,7 @@ class Handle {
   ~Handle();
   [[nodiscard]] hid_t get() const { return id_; }
   [[nodiscard]] explicit operator bool() const { return id_ >= 0; }
+  /// Closes the identifier.
   void reset();
 
  private:
@@ -45,31 +46,40 @@ void quiet();
 template <class T>
 hid_t native();
 
+/// A new group `name` in `parent`.
+/// \throws RunError if it exists or cannot be created
 Handle create_group(hid_t parent, const std::string& name);
 /// True if `path` (one or several levels) exists below `parent`.
 bool exists(hid_t parent, const std::string& path);
 
 /// Write an attribute: a value as a scalar, a vector as an array of rank 1. Strings are ASCII of fixed
 /// length, as H5MD requires.
+/// \throws RunError as own()
 void write_attribute(hid_t object, const std::string& name, const std::string& text);
 void write_attribute(hid_t object, const std::string& name, const std::vector<std::string>& texts);
 void write_attribute(hid_t object, const std::string& name, int value);
 void write_attribute(hid_t object, const std::string& name, const std::vector<int>& values);
 
-/// Write a whole dataset at once. Scalars have rank 0.
+/// Write a whole dataset at once.
+/// \throws RunError as own()
 template <class T>
 void write_dataset(hid_t parent, const std::string& name, const T* values, const std::vector<hsize_t>& shape);
+/// Write a dataset of rank 0.
 void write_scalar(hid_t parent, const std::string& name, double value);
+/// Write a text as a dataset of rank 0.
 void write_text(hid_t parent, const std::string& name, const std::string& text);
 
 /// Read a dataset or an attribute. The result for an object that is absent or of another shape is false or
 /// empty.
 /// \throws RunError if the object is damaged
 bool read_scalar(hid_t parent, const std::string& name, double& value);
+/// The same for a text.
 bool read_text(hid_t parent, const std::string& name, std::string& text);
 /// String attribute of fixed or variable length, scalar or list.
 std::vector<std::string> read_text_attribute(hid_t object, const std::string& name);
+/// Whole numbers of an attribute, scalar or list.
 std::vector<int> read_int_attribute(hid_t object, const std::string& name);
+/// All values of a dataset, the last index fastest.
 template <class T>
 std::vector<T> read_dataset(hid_t parent, const std::string& name);
 /// Extents of a dataset; empty for a scalar.
@@ -96,6 +106,9 @@ class Series {
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(dataset_); }
   [[nodiscard]] hsize_t size() const { return size_; }
   [[nodiscard]] const std::vector<hsize_t>& record() const { return record_; }
+  /// Append a record, or read record `index`. `values` has the memory type and the shape of the records.
+  /// \throws RunError if HDF5 fails
+  /// \pre index < size()
   void append(hid_t memory_type, const void* values);
   void read(hsize_t index, hid_t memory_type, void* values) const;
   /// Append or read `count` consecutive records.

@@ -20,6 +20,7 @@ inline std::string json_text(const nlohmann::json& document, int indent = -1) {
 inline nlohmann::json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }
+/// The same for a number that may be absent.
 inline nlohmann::json number_or_null(const std::optional<double>& value) {
   return value ? number_or_null(*value) : nlohmann::json(nullptr);
 }

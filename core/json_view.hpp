@@ -37,8 +37,12 @@ class JsonView {
   /// Elements of an array of exactly `count`.
   [[nodiscard]] std::vector<JsonView> elements(std::size_t count) const;
 
+  /// The value as a text.
+  /// \throws InputError, as all of these, if it has another type or is out of range
   [[nodiscard]] std::string text() const;
+  /// true or false.
   [[nodiscard]] bool boolean() const;
+  /// A finite number.
   [[nodiscard]] double number() const;
   /// A number, or NaN for null, which is how JSON holds a number that is not finite.
   [[nodiscard]] double number_or_nan() const;
@@ -51,7 +55,8 @@ class JsonView {
   [[nodiscard]] const nlohmann::json& value() const { return *value_; }
   /// Path of the value in the document, "points[3].axes"; empty for the document.
   [[nodiscard]] const std::string& key() const { return key_; }
-  /// \throws InputError with file, key, complaint and advice. \param complaint without a full stop
+  /// \throws InputError with file, key, complaint and advice.
+  /// \param complaint without a full stop
   [[noreturn]] void refuse(const std::string& complaint) const;
 
  private:

@@ -31,6 +31,7 @@ struct KeyRule {
   Bounds item;                    ///< of each number of a list
   std::vector<std::string> words = {};
 
+  /// Adds the types that `other` accepts, and narrows the bounds by those of `other`.
   void merge(const KeyRule& other);
   /// "whole number, 1 … 24", "\"walls\", \"periodic\"", "true, false".
   [[nodiscard]] std::string range() const;

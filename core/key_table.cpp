@@ -27,11 +27,6 @@ std::string meaning_of(const KeyRow& row) {
   return row.meaning.empty() ? "the same" : row.meaning;
 }
 
-std::string range_of(const std::map<std::string, KeyRule>& rules, const KeyRow& row) {
-  const auto rule = rules.find(row.key);
-  return rule == rules.end() ? "" : rule->second.range();
-}
-
 /// A default that is a value, not words, is set as code.
 std::string default_markdown(const std::string& absent) {
   if (absent.empty()) return "–";
@@ -57,6 +52,11 @@ std::string wrapped(const std::string& text, const std::string& indent) {
 
 }  // namespace
 
+std::string range_of(const std::map<std::string, KeyRule>& rules, const std::string& key) {
+  const auto rule = rules.find(key);
+  return rule == rules.end() ? "" : rule->second.range();
+}
+
 std::map<std::string, KeyRule> rules_of(const KeyTable& table) {
   const KeyRecord record;
   for (const KeyRow& row : table.rows) {
@@ -81,7 +81,7 @@ std::string key_markdown(const KeyTable& table) {
       if (const std::string note = note_of(table, name); !note.empty()) text += "\n" + note + "\n";
       text += "\n| key | unit | range | default | example | meaning |\n|---|---|---|---|---|---|\n";
     }
-    text += fmt::format("| `{}` | {} | {} | {} | `{}` | {} |\n", row.key, row.unit, range_of(rules, row),
+    text += fmt::format("| `{}` | {} | {} | {} | `{}` | {} |\n", row.key, row.unit, range_of(rules, row.key),
                         default_markdown(row.absent), row.example, linked(meaning_of(row)));
   }
   return text;
@@ -99,7 +99,7 @@ std::string key_text(const KeyTable& table) {
     }
     std::string facts = row.unit;
     for (const std::string& fact :
-         {range_of(rules, row), row.absent.empty() ? std::string() : "default: " + row.absent})
+         {range_of(rules, row.key), row.absent.empty() ? std::string() : "default: " + row.absent})
       facts += (facts.empty() || fact.empty() ? "" : "; ") + fact;
     text += fold_line(fmt::format("  {} = {}  # {}", row.key, row.example, facts), kWidth, "      # ");
     text += wrapped(meaning_of(row), "      ");

@@ -31,13 +31,17 @@ struct KeyTable {
   std::string intro;                                       ///< one paragraph of Markdown below the title
   std::vector<std::pair<std::string, std::string>> notes;  ///< table of keys, sentence below its heading
   std::vector<KeyRow> rows;
-  /// Reads the file that assignments "section.key=value" make. \throws Error as the reader
+  /// Reads the file that assignments "section.key=value" make.
+  /// \throws Error as the reader
   std::function<void(const std::vector<std::string>&)> read;
 };
 
 /// What the reader accepts for each key that it queried while reading all examples, one at a time. Files that
 /// examples name need not exist.
 std::map<std::string, KeyRule> rules_of(const KeyTable& table);
+
+/// The range of a key by its rule, as KeyRule::range() writes it; empty for a key without a rule.
+std::string range_of(const std::map<std::string, KeyRule>& rules, const std::string& key);
 
 /// A heading and one Markdown table for each TOML table.
 std::string key_markdown(const KeyTable& table);

@@ -16,8 +16,8 @@ struct Manifest {
   static constexpr const char* kName = "twincell-manifest.json";
 
   std::string product;  ///< kind of the folder, with its article: "a report"
-  std::map<std::string, std::set<std::string>>
-      files;  ///< path in the folder -> SHA-256; two while a file is replaced
+  /// Path in the folder -> SHA-256; two while a file is replaced.
+  std::map<std::string, std::set<std::string>> files;
 
   /// Reads the manifest of a folder. Returns nullopt if there is none or if it is invalid: damaged, larger
   /// than 256 MiB, not written by this program, not a regular file, or naming a file outside the folder.

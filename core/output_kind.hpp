@@ -43,9 +43,11 @@ struct Product {
   static Product checkpoint() { return {.name = "a checkpoint", .sign = Sign::checkpoint, .mark = {}}; }
   /// A CSV table with this header line.
   static Product table(const std::string& heading);
+  /// A text that begins with `beginning`.
   static Product text(std::string name, std::string beginning) {
     return {.name = std::move(name), .sign = Sign::beginning, .mark = std::move(beginning)};
   }
+  /// A JSON object with the member `member`.
   static Product json(std::string name, std::string member) {
     return {.name = std::move(name), .sign = Sign::json_member, .mark = std::move(member)};
   }
@@ -57,9 +59,11 @@ struct Product {
   static Product part() { return {.name = "a part", .sign = Sign::none, .mark = {}}; }
   /// The folder of a sweep or a reproduction: many runs, written by any number of processes.
   static Product runs() { return shared_folder("a folder of runs"); }
+  /// A folder that one run writes as a whole.
   static Product whole_folder(std::string name) {
     return {.name = std::move(name), .sign = Sign::none, .mark = {}, .folder = true};
   }
+  /// A folder into which several runs write.
   static Product shared_folder(std::string name) {
     return {.name = std::move(name), .sign = Sign::none, .mark = {}, .folder = true, .shared = true};
   }

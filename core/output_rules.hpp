@@ -38,7 +38,7 @@ std::filesystem::path require_output(const std::filesystem::path& path, const Pr
 bool may_replace(const std::filesystem::path& file, const Product& product);
 
 /// Creates a folder that several runs share, with its manifest, or accepts an existing one.
-/// \return as require_output
+/// \returns as require_output
 /// \throws ConfigError as require_output, or if the folder cannot be created
 std::filesystem::path claim_shared_folder(const std::filesystem::path& path, const Product& product);
 

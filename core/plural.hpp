@@ -9,7 +9,8 @@
 
 namespace twincell {
 
-/// "1 frame", "2 frames". \param one the word for one of them, whose plural ends in s
+/// "1 frame", "2 frames".
+/// \param one the word for one of them, whose plural ends in s
 template <class Count>
 std::string plural(Count n, std::string_view one) {
   return fmt::format("{} {}{}", n, one, n == 1 ? "" : "s");

@@ -15,7 +15,8 @@ class Progress;
 class CancellationCheck {
  public:
   explicit CancellationCheck(Progress& progress) : progress_(progress) {}
-  /// Call after each unit of work. \throws as Progress::update
+  /// Call after each unit of work.
+  /// \throws as Progress::update
   void operator()();
 
  private:

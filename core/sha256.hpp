@@ -16,6 +16,8 @@ class Sha256 {
   ~Sha256();
   Sha256(const Sha256&) = delete;
   Sha256& operator=(const Sha256&) = delete;
+  /// Adds `size` bytes at `data`.
+  /// \pre hex() was not called
   void add(const void* data, std::size_t size);
   /// Digest of all data added so far, as 64 hex digits. Call once.
   [[nodiscard]] std::string hex();

@@ -14,7 +14,7 @@ namespace twincell {
 /// One stage is timed at every instant: a stage that begins inside another suspends it, and the time between
 /// stages belongs to "other". The times therefore add up to the time since the construction, without
 /// overlap. Elapsed time rather than processor time, because it is what a user waits for and what more
-/// threads shorten; processor_seconds() in cpu_clock.hpp states next to it how many processors were busy.
+/// threads shorten; process_cpu_seconds() in cpu_clock.hpp states next to it how many processors were busy.
 ///
 /// A change of stage costs one reading of the clock and a search in a short list. Stages are therefore coarse
 /// pieces, such as a frame or a call of a solver, never parts of an inner loop. An object belongs to one
@@ -37,7 +37,8 @@ class StageTimes {
     [[nodiscard]] double bytes_per_second() const { return seconds > 0 ? bytes / seconds : 0; }
   };
 
-  /// The time starts now. \param clock for tests
+  /// The time starts now.
+  /// \param clock for tests
   explicit StageTimes(Clock clock = &elapsed_seconds);
 
   /// The stages in the order in which they were first entered, "other" last. Includes the time until now.
@@ -67,12 +68,14 @@ class StageTimes {
 ///     writing.count(1);
 class Stage {
  public:
-  /// \param times null: nothing is timed \param unit as in Row; that of the first entry applies
+  /// \param times null: nothing is timed
+  /// \param unit as in Row; that of the first entry applies
   Stage(StageTimes* times, std::string_view name, std::string_view unit = {});
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
   ~Stage();
-  /// Adds to the work of the stage. \param bytes as in Row
+  /// Adds to the work of the stage.
+  /// \param bytes as in Row
   void count(double pieces, double bytes = 0);
 
  private:

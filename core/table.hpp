@@ -18,8 +18,8 @@ struct Table {
   };
   std::string file;
   std::vector<std::string> names;
-  std::vector<std::vector<double>>
-      columns;  ///< [names][rows]; NaN for an empty field, "nan" or text; True is 1, False is 0
+  /// [names][rows]; NaN for an empty field, "nan" or text; True is 1, False is 0.
+  std::vector<std::vector<double>> columns;
   std::map<std::size_t, Text> texts;  ///< of the columns that hold other things than numbers
 
   [[nodiscard]] std::size_t n_rows() const { return columns.empty() ? 0 : columns.front().size(); }
@@ -31,8 +31,9 @@ struct Table {
 
 /// Reads comma-separated values: a header line of names, then rows with as many fields. Blank lines, lines
 /// that begin with #, and spaces around fields are skipped. Columns of text, such as the ids of a sweep, may
-/// stand beside those of numbers. \throws InputError "FILE:LINE: …" for a missing file, a row of another
-/// length, or a table without rows; also as check_column_names
+/// stand beside those of numbers.
+/// \throws InputError "FILE:LINE: …" for a missing file, a row of another length, or a table without rows;
+/// also as check_column_names
 Table read_table(const std::filesystem::path& path);
 
 }  // namespace twincell

@@ -29,8 +29,8 @@ std::vector<std::string> field_texts(std::string_view line);
 /// (require_same_index).
 std::optional<std::size_t> twin_of_index(const std::vector<std::string>& names);
 
-/// \param twin twin_of_index of the names \throws InputError with the line of `where` if the two fields
-/// differ
+/// \param twin twin_of_index of the names
+/// \throws InputError with the line of `where` if the two fields differ
 void require_same_index(const std::vector<std::string_view>& fields, std::optional<std::size_t> twin,
                         const std::string& name, const Where& where);
 

@@ -4,6 +4,7 @@
 
 #include "analysis/observable/observable.hpp"
 #include "analysis/observable/results.hpp"
+#include "analysis/observable/short_periods.hpp"
 #include "analysis/runs/pooling.hpp"
 #include "analysis/runs/windows.hpp"
 #include "core/error.hpp"
@@ -49,6 +50,12 @@ py::object interval_of(const analysis::Result& r) {
   return py::make_tuple(r.interval->low, r.interval->high);
 }
 
+/// The notes of the verb on periods too short for neighbours.
+void warn_of_periods(const TrajectorySource& source, const analysis::AnalysisOptions& options) {
+  for (const std::string& sentence : analysis::short_periods(source.info(), options))
+    warn(fmt::format("{}: {}.", source.name(), sentence));
+}
+
 Results analyzed(const std::vector<std::shared_ptr<Trajectory>>& trajectories,
                  const analysis::AnalysisOptions& options, const py::object& callback) {
   std::vector<const TrajectorySource*> sources;
@@ -62,6 +69,7 @@ Results analyzed(const std::vector<std::shared_ptr<Trajectory>>& trajectories,
   }
   if (sources.empty()) throw ConfigError({.file = {}, .key = "trajectory"}, "the list has no trajectory.");
   analysis::require_one_condition(sources);
+  for (const TrajectorySource* source : sources) warn_of_periods(*source, options);
   return unlocked(callback, [&](Progress& progress) {
     return Results{analysis::analyze_together(sources.size(), options,
                                               [&](std::size_t i, const analysis::AnalysisOptions& of_run) {
@@ -80,6 +88,7 @@ struct WindowOfRun {
 std::vector<WindowOfRun> analyzed_windows(const Trajectory& trajectory,
                                           const analysis::AnalysisOptions& options, std::int64_t cycles,
                                           const py::object& callback) {
+  warn_of_periods(trajectory.source(), options);
   Provenance provenance = provenance_of("twincell.analyze_windows (Python)");
   if (std::filesystem::is_regular_file(trajectory.source().name()))
     provenance.inputs.emplace_back(trajectory.source().name());
@@ -232,11 +241,11 @@ void bind_analysis(py::module_& module) {
       [](const py::object& trajectory, const py::object& only, std::int64_t discard, std::int64_t cycles,
          const std::vector<std::int64_t>& tracers, const std::optional<std::array<double, 2>>& tracer_band,
          const std::string& s_b, const std::string& neighbours, double cell_radius, double field_cell,
-         std::optional<double> rest_height, std::optional<double> cutoff, const py::object& box,
+         std::optional<double> rest_height, std::optional<double> cutoff, const py::object& box, bool unwrap,
          const py::object& callback) {
         std::vector<std::shared_ptr<Trajectory>> trajectories;
         if (py::isinstance<py::array>(trajectory))
-          trajectories.push_back(trajectory_of_points(trajectory, box));
+          trajectories.push_back(trajectory_of_points(trajectory, box, unwrap));
         else if (!box.is_none())
           throw ConfigError({.file = {}, .key = "box"},
                             "is that of an array of points; a trajectory has its own.");
@@ -262,12 +271,14 @@ void bind_analysis(py::module_& module) {
       py::arg("tracer_band") = py::none(), py::arg("s_b") = "variance", py::arg("neighbours") = "cutoff",
       py::arg("cell_radius") = analysis::AnalysisOptions{}.cell_radius,
       py::arg("field_cell") = analysis::AnalysisOptions{}.field_cell, py::arg("rest_height") = py::none(),
-      py::arg("cutoff") = py::none(), py::arg("box") = py::none(), py::arg("callback") = py::none(),
+      py::arg("cutoff") = py::none(), py::arg("box") = py::none(), py::arg("unwrap") = true,
+      py::arg("callback") = py::none(),
       (summary_text(kHeader, "analyze") +
        "\n\ntrajectory: a Trajectory or the name of its file; a list of them, which are pooled; or an array "
        "of points, (frames, beads, 2) as (x, z), (frames, beads, 3) as (x, y, z), or one frame of it, of "
        "which every frame counts as a cycle. box: of such an array, a Box or the lengths of a periodic box; "
-       "None: open." +
+       "None: open. unwrap: positions of such an array along a period are unwrapped, as by "
+       "Trajectory.from_arrays; False: they are kept." +
        options_text +
        "\ncycles: number of cycles to use; 0: all. tracers: slots of the tracers; tracer_band: (low, high), "
        "heights of the beads that serve as tracers, sigma. field_cell: edge of the cells of fields, sigma. "

@@ -65,6 +65,54 @@ Box unpickled_box(const py::tuple& state) {
   return b;
 }
 
+bool same_box(const Box& a, const Box& b) {
+  return a.dimension == b.dimension && a.lower == b.lower && a.upper == b.upper && a.boundary == b.boundary &&
+         a.side_tilt == b.side_tilt;
+}
+
+/// State for pickle. \throws ConfigError for a recorded motion, which has too many numbers to repeat here
+py::tuple pickled_drive(const Drive& d) {
+  if (d.recorded)
+    throw ConfigError({.file = {}, .key = "drive"},
+                      "is a recorded motion, which is pickled with its trajectory or scene only.");
+  py::list harmonics;
+  for (const Harmonic& h : d.harmonics) harmonics.append(py::make_tuple(h.amplitude, h.phase));
+  py::object ramp = py::none(), horizontal = py::none();
+  if (d.ramp)
+    ramp = py::make_tuple(d.ramp->from.amplitude, d.ramp->from.omega, d.ramp->to.amplitude, d.ramp->to.omega,
+                          d.ramp->power, d.ramp->first, d.ramp->cycles, d.ramp->returns);
+  if (d.horizontal)
+    horizontal = py::make_tuple(d.horizontal->amplitude, d.horizontal->ratio, d.horizontal->phase);
+  return py::make_tuple(static_cast<int>(d.axis), d.amplitude, d.omega, harmonics, ramp, horizontal,
+                        d.gravity, d.downward_share);
+}
+
+Drive unpickled_drive(const py::tuple& state) {
+  Drive d;
+  d.axis = static_cast<Axis>(state[0].cast<int>());
+  d.amplitude = state[1].cast<double>();
+  d.omega = state[2].cast<double>();
+  for (const auto& [amplitude, phase] : state[3].cast<std::vector<std::pair<double, double>>>())
+    d.harmonics.push_back({.amplitude = amplitude, .phase = phase});
+  if (!state[4].is_none()) {
+    const auto r = state[4].cast<py::tuple>();
+    d.ramp = DriveRamp{.from = {.amplitude = r[0].cast<double>(), .omega = r[1].cast<double>()},
+                       .to = {.amplitude = r[2].cast<double>(), .omega = r[3].cast<double>()},
+                       .power = r[4].cast<int>(),
+                       .first = r[5].cast<double>(),
+                       .cycles = r[6].cast<double>(),
+                       .returns = r[7].cast<bool>()};
+  }
+  if (!state[5].is_none()) {
+    const auto h = state[5].cast<py::tuple>();
+    d.horizontal = HorizontalMotion{
+        .amplitude = h[0].cast<double>(), .ratio = h[1].cast<int>(), .phase = h[2].cast<double>()};
+  }
+  d.gravity = state[6].cast<double>();
+  d.downward_share = state[7].cast<double>();
+  return d;
+}
+
 }  // namespace
 
 void bind_box(py::module_& module) {
@@ -90,6 +138,12 @@ void bind_box(py::module_& module) {
           "boundary", [](const Box& b) { return boundary_words(b); },
           header_text("trajectory/box.hpp", "Boundary"))
       .def(py::pickle(&pickled_box, &unpickled_box))
+      .def("__eq__", &same_box, py::is_operator())
+      .def("__hash__",
+           [](const Box& b) {
+             return py::hash(py::make_tuple(b.dimension, b.lower.x(), b.lower.y(), b.lower.z(), b.upper.x(),
+                                            b.upper.y(), b.upper.z()));
+           })
       .def("__repr__", [](const Box& b) {
         return fmt::format("Box(({:g}, {:g}, {:g}), ({:g}, {:g}, {:g}), ({}, {}, {}), dimension={})",
                            b.lower.x(), b.lower.y(), b.lower.z(), b.upper.x(), b.upper.y(), b.upper.z(),
@@ -120,6 +174,7 @@ void bind_drive(py::module_& module) {
            header_text("trajectory/drive.hpp", "Drive::velocity"))
       .def("acceleration", &Drive::acceleration, py::arg("fraction"), py::arg("cycle") = 0,
            header_text("trajectory/drive.hpp", "Drive::acceleration"))
+      .def(py::pickle(&pickled_drive, &unpickled_drive))
       .def("at", &Drive::at, py::arg("cycles"), header_text("trajectory/drive.hpp", "Drive::at"))
       .def("__repr__", [](const Drive& d) {
         const bool sine = d.harmonics.empty() && !d.recorded && !d.ramp && !d.horizontal;

@@ -6,6 +6,9 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <csignal>
 #include <new>
 #include <thread>
@@ -65,12 +68,33 @@ PyObject* class_of(ExitCode code) {
   }
 }
 
+/// A sentence with the options of the program, "--phase-lock", as the arguments of Python, "phase_lock".
+std::string with_python_names(const std::string& sentence) {
+  const auto in_word = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+  };
+  std::string said;
+  for (std::size_t i = 0; i < sentence.size(); ++i) {
+    const bool begins = sentence.compare(i, 2, "--") == 0 && (i == 0 || !in_word(sentence[i - 1])) &&
+                        i + 2 < sentence.size() &&
+                        std::islower(static_cast<unsigned char>(sentence[i + 2])) != 0;
+    if (!begins) {
+      said += sentence[i];
+      continue;
+    }
+    for (i += 2; i < sentence.size() && in_word(sentence[i]); ++i)
+      said += sentence[i] == '-' ? '_' : sentence[i];
+    --i;
+  }
+  return said;
+}
+
 void translate(std::exception_ptr thrown) {
   if (!thrown) return;
   try {
     std::rethrow_exception(thrown);
   } catch (const Error& e) {
-    PyErr_SetString(class_of(e.exit_code()), in_final_names(e.what()).c_str());
+    PyErr_SetString(class_of(e.exit_code()), with_python_names(in_final_names(e.what())).c_str());
   } catch (const std::bad_alloc&) {
     PyErr_NoMemory();
   } catch (const py::builtin_exception&) {
@@ -90,7 +114,8 @@ void translate(std::exception_ptr thrown) {
 }  // namespace
 
 void warn(const std::string& sentence) {
-  if (PyErr_WarnEx(PyExc_UserWarning, sentence.c_str(), 2) != 0) throw py::error_already_set();
+  if (PyErr_WarnEx(PyExc_UserWarning, with_python_names(sentence).c_str(), 2) != 0)
+    throw py::error_already_set();
 }
 
 namespace {
@@ -182,6 +207,7 @@ Box box_of(const py::object& said) {
     throw ConfigError(
         {.file = {}, .key = "box"},
         fmt::format("has {} lengths; a periodic box has 2 (x, z) or 3 (x, y, z).", lengths.size()));
+  box.dimension = lengths.size() == 2 ? 2 : 3;
   for (std::size_t k = 0; k < lengths.size(); ++k) {
     require_range({.file = {}, .key = "box"}, lengths[k], 0, std::nullopt, true);
     const std::size_t axis = lengths.size() == 2 ? 2 * k : k;
@@ -196,8 +222,57 @@ py::object without_mask(const py::handle& said) {
                                      : py::reinterpret_borrow<py::object>(said);
 }
 
+bool is_missing(const Vec3& position, bool planar, const std::string& name, std::size_t bead,
+                std::optional<std::size_t> frame) {
+  int components = 0, absent = 0;
+  bool infinite = false;
+  for (int k = 0; k < 3; ++k) {
+    if (planar && k == 1) continue;
+    ++components;
+    absent += std::isnan(position[k]) ? 1 : 0;
+    infinite = infinite || std::isinf(position[k]);
+  }
+  if (!infinite && (absent == 0 || absent == components)) return absent > 0;
+  const std::string where = frame ? fmt::format(" of frame {}", *frame) : "";
+  throw ConfigError({.file = {}, .key = name},
+                    fmt::format("bead {}{} is {}; a position is finite, or NaN in all components if the bead "
+                                "is missing.",
+                                bead, where, infinite ? "at infinity" : "NaN in some components only"));
+}
+
+std::optional<double> common_height(const std::vector<Vec3>& points) {
+  constexpr std::size_t kMinBeads = 3;
+  const Vec3* first = nullptr;
+  std::size_t n = 0;
+  bool in_row = true;
+  for (const Vec3& p : points) {
+    if (!p.allFinite()) continue;
+    if (first == nullptr) first = &p;
+    if (p.z() != first->z()) return {};
+    in_row = in_row && p.y() == first->y();
+    ++n;
+  }
+  return n >= kMinBeads && !in_row ? std::optional(first->z()) : std::nullopt;
+}
+
+namespace {
+
+/// The columns of a DataFrame in the order of coordinates, if they have their names; anything else as it is.
+py::object with_ordered_columns(const py::handle& said) {
+  const auto same = py::reinterpret_borrow<py::object>(said);
+  if (!py::hasattr(said, "columns") || !py::hasattr(said, "loc")) return same;
+  std::vector<std::string> names;
+  for (const py::handle column : said.attr("columns")) names.push_back(py::str(column).cast<std::string>());
+  std::sort(names.begin(), names.end());
+  using Names = std::vector<std::string>;
+  if (names != Names{"x", "y"} && names != Names{"x", "z"} && names != Names{"x", "y", "z"}) return same;
+  return said[py::cast(names)];
+}
+
+}  // namespace
+
 std::vector<Vec3> points_of(const py::handle& said, const std::string& name) {
-  const py::object points = without_mask(said);
+  const py::object points = without_mask(with_ordered_columns(said));
   const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(points);
   if (!array) throw ConfigError({.file = {}, .key = name}, "is no array of numbers.");
   if (array.ndim() != 2 || (array.shape(1) != 2 && array.shape(1) != 3)) {
@@ -209,10 +284,13 @@ std::vector<Vec3> points_of(const py::handle& said, const std::string& name) {
         fmt::format("has the shape ({}); points are (N, 2) as (x, z) or (N, 3) as (x, y, z).", shape));
   }
   const auto p = array.unchecked<2>();
-  std::vector<Vec3> out(static_cast<std::size_t>(p.shape(0)));
-  for (py::ssize_t i = 0; i < p.shape(0); ++i)
-    out[static_cast<std::size_t>(i)] =
-        p.shape(1) == 2 ? Vec3(p(i, 0), 0, p(i, 1)) : Vec3(p(i, 0), p(i, 1), p(i, 2));
+  const bool planar = p.shape(1) == 2;
+  std::vector<Vec3> out;
+  out.reserve(static_cast<std::size_t>(p.shape(0)));
+  for (py::ssize_t i = 0; i < p.shape(0); ++i) {
+    out.push_back(planar ? Vec3(p(i, 0), 0, p(i, 1)) : Vec3(p(i, 0), p(i, 1), p(i, 2)));
+    (void)is_missing(out.back(), planar, name, static_cast<std::size_t>(i));
+  }
   return out;
 }
 
@@ -226,6 +304,7 @@ PYBIND11_MODULE(_core, module) {
   module.doc() = "The C++ side of twincell.";
   make_classes(module);
   py::register_exception_translator(&translate);
+  module.def("_with_python_names", &with_python_names);
   module.attr("__version__") = from_json(version_json())["version"];
   module.def(
       "version", [] { return from_json(version_json()); },

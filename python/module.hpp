@@ -116,20 +116,36 @@ py::array array_of(std::vector<T> values, std::vector<py::ssize_t> shape = {}) {
 /// JSON text as Python values.
 py::object from_json(const std::string& text);
 
-/// Provenance of what Python computes. \param call for example "twincell.simulate (Python)"
+/// Provenance of what Python computes.
+/// \param call for example "twincell.simulate (Python)"
 Provenance provenance_of(const std::string& call, int threads = 1);
 
-/// Number of threads: `threads`, or the number of cores if it is 0. \throws ConfigError below 0, above 4096
+/// Number of threads: `threads`, or the number of cores if it is 0.
+/// \throws ConfigError below 0, above 4096
 int threads_of(int threads);
 
 /// Numbers without a mask: those that a NumPy mask hides are NaN. Anything else as it is.
 py::object without_mask(const py::handle& said);
 
-/// Points (N, 2) as (x, z), or (N, 3) as (x, y, z).
-/// \throws ConfigError for another shape \param name of the argument, for the message
+/// Points (N, 2) as (x, z), or (N, 3) as (x, y, z). The columns of a DataFrame are taken by name if these are
+/// x and y, x and z, or x, y and z.
+/// \throws ConfigError for another shape, and as is_missing
+/// \param name of the argument, for the message
 std::vector<Vec3> points_of(const py::handle& points, const std::string& name);
 
-/// The box of an argument: a Box; None (open); or the two or three lengths of a periodic box.
+/// Whether a bead is missing: all components of its position are NaN.
+/// \param planar y is not one of them
+/// \throws ConfigError if one is infinite, or only some are NaN
+/// \param name of the argument, for the message
+bool is_missing(const Vec3& position, bool planar, const std::string& name, std::size_t bead,
+                std::optional<std::size_t> frame = {});
+
+/// The z that three points or more have in common while their y differs, as in the convention (x, y, 0) for a
+/// plane; nothing for others. Missing points do not count.
+std::optional<double> common_height(const std::vector<Vec3>& points);
+
+/// The box of an argument: a Box; None (open); or the two or three lengths of a periodic box of that
+/// dimension.
 /// \throws ConfigError for anything else
 Box box_of(const py::object& said);
 
@@ -142,7 +158,8 @@ void bind_observables(py::module_& module);
 void bind_simulation(py::module_& module);
 void bind_verbs(py::module_& module);
 
-/// Issues a UserWarning. \throws py::error_already_set if warnings are errors
+/// Issues a UserWarning.
+/// \throws py::error_already_set if warnings are errors
 void warn(const std::string& sentence);
 
 }  // namespace twincell::python

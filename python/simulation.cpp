@@ -90,6 +90,10 @@ class Run {
     SharedFrames these(all_->info());
     Recorder recorder(these, *all_);
     unlocked(callback, [&](Progress& progress) { run_->run(recorder, progress, most); });
+    if (cycles && these.n_frames() == 0)
+      throw RunError(
+          fmt::format("The run has reached its {} cycles; a scene with a larger time.cycles runs longer.",
+                      run_->scene().cycles));
     return std::make_shared<Trajectory>(std::move(these));
   }
 
@@ -200,6 +204,10 @@ void bind_scene(py::module_& module) {
                         return sim::read_scene_text(state[0].cast<std::string>(),
                                                     state[1].cast<std::string>());
                       }))
+      .def(
+          "__eq__", [](const sim::Scene& a, const sim::Scene& b) { return a.resolved == b.resolved; },
+          py::is_operator())
+      .def("__hash__", [](const sim::Scene& s) { return py::hash(py::str(s.resolved)); })
       .def("__repr__", [](const sim::Scene& s) {
         return fmt::format("<twincell.Scene {}: Gamma = {:.6g}, {} cycles after {}>", s.file,
                            s.g() > 0 ? s.drive.gamma() : 0, s.cycles, s.discard);
@@ -222,7 +230,7 @@ void bind_simulation(py::module_& module) {
       .def("run", &Run::run, py::arg("cycles") = py::none(), py::arg("callback") = py::none(),
            "Goes on by this number of recorded cycles, or to the end of the scene, and returns their frames. "
            "Settles and runs the discarded cycles first if that is not done. At the end of the scene the "
-           "result has no frame.")
+           "result has no frame, and a number of cycles is refused (RunError).")
       .def_property_readonly("trajectory", &Run::trajectory, "All frames so far, without a copy.")
       .def_property_readonly(
           "state",

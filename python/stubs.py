@@ -17,6 +17,7 @@ def clean(signature):
     signature = re.sub(r"numpy\.ndarray(\[[^\]]*\])?", "numpy.ndarray", signature)
     signature = re.sub(r"\b(Optional|Union|List|Tuple|Dict|Iterator|Callable|Sequence)\[", r"typing.\1[", signature)
     signature = re.sub(r"List\[(\w+)\[\d+\]\]", r"Sequence[\1]", signature)
+    signature = signature.replace("os.PathLike", "str | os.PathLike[str]")
     signature = re.sub(r"= <.*?>(?=[,)])", "= ...", signature)
     return re.sub(r"\b(handle|object)\b", "typing.Any", signature)
 
@@ -78,7 +79,7 @@ def class_(name, thing):
 
 
 def main():
-    parts = ['"""The C++ side of twincell; written by stubs.py."""', "import typing\n\nimport numpy"]
+    parts = ['"""The C++ side of twincell; written by stubs.py."""', "import os\nimport typing\n\nimport numpy"]
     for name, thing in sorted(vars(core).items()):
         if name.startswith("__"):
             continue

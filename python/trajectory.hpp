@@ -24,6 +24,7 @@ class SharedFrames : public TrajectorySource, public TrajectorySink {
   void read(std::size_t index, Frame& frame) const override { frame = *frames_[index]; }
   [[nodiscard]] std::string name() const override { return "memory"; }
   void append(const Frame& frame) override { frames_.push_back(std::make_shared<const Frame>(frame)); }
+  /// Adds a frame at the end.
   void append(std::shared_ptr<const Frame> frame) { frames_.push_back(std::move(frame)); }
   [[nodiscard]] const std::vector<std::shared_ptr<const Frame>>& frames() const { return frames_; }
 
@@ -63,7 +64,8 @@ class Trajectory {
   /// The file, as long as it is the one that was opened; nothing in memory, and after the
   /// file was replaced, changed or removed.
   [[nodiscard]] std::optional<FileIdentity> file() const;
-  /// Frame `index`. \pre index < n_frames()
+  /// Frame `index`.
+  /// \pre index < n_frames()
   std::shared_ptr<const Frame> frame(std::size_t index);
 
  private:
@@ -74,11 +76,15 @@ class Trajectory {
   std::size_t last_index_ = 0;
 };
 
-/// The trajectory of an argument: a Trajectory, or the name of a file. \throws TypeError for anything else
+/// The trajectory of an argument: a Trajectory, or the name of a file.
+/// \throws TypeError for anything else
 std::shared_ptr<Trajectory> trajectory_of(const py::handle& said);
 
 /// Frames of points (T, N, 2 or 3), or one of (N, 2 or 3), as a trajectory in memory. Each counts as a cycle,
-/// so that correlations over cycles are over frames. \param box as box_of
-std::shared_ptr<Trajectory> trajectory_of_points(const py::object& points, const py::object& box);
+/// so that correlations over cycles are over frames.
+/// \param box as box_of
+/// \param unwrapped positions along a period are unwrapped
+std::shared_ptr<Trajectory> trajectory_of_points(const py::object& points, const py::object& box,
+                                                 bool unwrapped);
 
 }  // namespace twincell::python

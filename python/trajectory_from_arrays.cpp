@@ -140,6 +140,33 @@ struct GivenFrames {
   Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);  ///< corners around all positions
 };
 
+/// Checks and marks the missing beads of a frame, and extends the corners. \param planar as is_missing
+void take_positions(GivenFrames& given, Frame& frame, std::size_t t, bool planar) {
+  for (std::size_t i = 0; i < frame.position.size(); ++i) {
+    Vec3& p = frame.position[i];
+    if (is_missing(p, planar, "positions", i, t)) {
+      p.setConstant(std::nan(""));
+      given.missing = true;
+      continue;
+    }
+    given.low = given.low.cwiseMin(p);
+    given.high = given.high.cwiseMax(p);
+  }
+}
+
+/// \throws ConfigError if the beads of all frames have one z, as in the convention (x, y, 0) for a plane
+void refuse_flat(const GivenFrames& given) {
+  if (given.low.z() != given.high.z()) return;
+  for (const Frame& frame : given.frames)
+    if (common_height(frame.position))
+      throw ConfigError(
+          {.file = {}, .key = "positions"},
+          fmt::format("all beads have z = {:g}: give positions of shape (frames, beads, 2) (positions[..., "
+                      ":2]) for a two-dimensional system, or a Box of dimension 3 for a layer in three "
+                      "dimensions.",
+                      given.low.z()));
+}
+
 GivenFrames make_frames(const VectorArray& r, const VectorArray& v, const VectorArray& position_sigma,
                         const FrameNumbers& n) {
   GivenFrames given;
@@ -154,15 +181,7 @@ GivenFrames make_frames(const VectorArray& r, const VectorArray& v, const Vector
     frame.position = r.of(t, 0);
     if (v.given()) frame.velocity = v.of(t, 0);
     if (position_sigma.given()) frame.position_sigma = position_sigma.of(t, std::nan(""));
-    for (Vec3& p : frame.position) {
-      if (!p.allFinite()) {
-        p.setConstant(std::nan(""));
-        given.missing = true;
-        continue;
-      }
-      given.low = given.low.cwiseMin(p);
-      given.high = given.high.cwiseMax(p);
-    }
+    take_positions(given, frame, k, r.extent(2) == 2);
   }
   return given;
 }
@@ -173,7 +192,6 @@ Box cell_around(const GivenFrames& given, const py::object& said_box, py::ssize_
   Box box;
   if (!said_box.is_none()) {
     box = box_of(said_box);
-    if (!py::isinstance<Box>(said_box)) box.dimension = box.periodic(Axis::y) ? 3 : 2;
     if (box.dimension == 2 && components == 3 && given.low.y() < given.high.y())
       throw ConfigError({.file = {}, .key = "box"},
                         "is planar, but the positions are not; three-dimensional ones need Box(dimension=3) "
@@ -213,7 +231,7 @@ std::shared_ptr<Trajectory> from_arrays(const py::object& positions, const py::o
                                         const py::object& time, const py::object& step,
                                         const py::object& plate_height, const py::object& said_box,
                                         const std::optional<Drive>& drive, int phases_per_cycle,
-                                        const std::string& source) {
+                                        const std::string& source, bool unwrapped) {
   const VectorArray r(positions, "positions", -1, -1);
   if (!r.given()) throw ConfigError({.file = {}, .key = "positions"}, "is missing.");
   const py::ssize_t frames = r.extent(0), beads = r.extent(1);
@@ -222,7 +240,6 @@ std::shared_ptr<Trajectory> from_arrays(const py::object& positions, const py::o
   TrajectoryInfo info;
   info.n_beads = static_cast<std::size_t>(beads);
   info.drive = drive;
-  info.phases_per_cycle = phases_per_cycle;
   if (source != "simulation" && source != "experiment" && source != "unknown")
     throw ConfigError({.file = {}, .key = "source"},
                       fmt::format("is '{}'; it must be simulation, experiment or unknown.", source));
@@ -232,23 +249,35 @@ std::shared_ptr<Trajectory> from_arrays(const py::object& positions, const py::o
   info.tracer = numbers_of<std::uint8_t>(tracers, "tracers", beads, "beads", 0, 1);
   info.provenance_json = provenance_of("twincell.Trajectory.from_arrays (Python)").to_json();
   const FrameNumbers numbers = frame_numbers(phase, cycle, time, step, plate_height, frames);
+  info.phases_per_cycle = phases_per_cycle;
+  if (phases_per_cycle == 0 && !numbers.phases.empty()) {
+    const std::int32_t last = *std::max_element(numbers.phases.begin(), numbers.phases.end());
+    info.phases_per_cycle = std::min(last, std::numeric_limits<std::int32_t>::max() - 1) + 1;
+  }
   GivenFrames given = make_frames(r, v, s, numbers);
   info.columns = {.velocity = v.given(),
                   .identity = given.missing,
                   .phase = !numbers.phases.empty(),
                   .plate_height = !numbers.heights.empty(),
                   .position_sigma = s.given()};
+  const bool spatial = py::isinstance<Box>(said_box) && said_box.cast<const Box&>().dimension == 3;
+  if (!spatial) refuse_flat(given);
   info.box = cell_around(given, said_box, r.extent(2));
-  if (!said_box.is_none()) unwrap(given.frames, info.box);
+  if (unwrapped && !said_box.is_none()) unwrap(given.frames, info.box);
   const char* const name = "from_arrays";
-  require_ranges(info, name);
-  require_order(numbers.phases, numbers.cycles, name);
-  return std::make_shared<Trajectory>(in_memory(std::move(info), given, name));
+  try {
+    require_ranges(info, name);
+    require_order(numbers.phases, numbers.cycles, name);
+    return std::make_shared<Trajectory>(in_memory(std::move(info), given, name));
+  } catch (const InputError& e) {  // arguments are no file
+    throw ConfigError({}, e.what());
+  }
 }
 
 }  // namespace
 
-std::shared_ptr<Trajectory> trajectory_of_points(const py::object& points, const py::object& box) {
+std::shared_ptr<Trajectory> trajectory_of_points(const py::object& points, const py::object& box,
+                                                 bool unwrapped) {
   const py::module_ numpy = py::module_::import("numpy");
   py::object frames = numpy.attr("asarray")(without_mask(points));
   if (frames.attr("ndim").cast<int>() == 2) frames = numpy.attr("expand_dims")(frames, 0);
@@ -260,7 +289,7 @@ std::shared_ptr<Trajectory> trajectory_of_points(const py::object& points, const
   const py::ssize_t n = py::len(frames);
   const py::object none = py::none();
   return from_arrays(frames, none, none, none, none, none, numpy.attr("zeros")(n), numpy.attr("arange")(n),
-                     none, none, none, box, {}, 1, "unknown");
+                     none, none, none, box, {}, 1, "unknown", unwrapped);
 }
 
 void bind_trajectory_from_arrays(py::module_& module) {
@@ -274,13 +303,15 @@ void bind_trajectory_from_arrays(py::module_& module) {
       py::arg("tracers") = py::none(), py::arg("phase") = py::none(), py::arg("cycle") = py::none(),
       py::arg("time") = py::none(), py::arg("step") = py::none(), py::arg("plate_height") = py::none(),
       py::arg("box") = py::none(), py::arg("drive") = py::none(), py::arg("phases_per_cycle") = 0,
-      py::arg("source") = "unknown",
+      py::arg("source") = "unknown", py::arg("unwrap") = true,
       "A trajectory in memory, so that data of any origin can be analysed.\n\n"
-      "positions: (frames, beads, 2) as (x, z) or (frames, beads, 3) as (x, y, z), sigma; NaN where a "
-      "bead is missing. The other arguments are the columns of the same names: vectors have the shape of "
-      "positions, numbers of beads (beads,), numbers of frames (frames,). box: a Box, or the lengths (x, "
-      "z) "
-      "or (x, y, z) of a periodic one; without it the cell is open on all sides. Arrays are copied."));
+      "positions: (frames, beads, 2) as (x, z) or (frames, beads, 3) as (x, y, z) with z up, sigma; NaN "
+      "where a bead is missing. The other arguments are the columns of the same names: vectors have the "
+      "shape of positions, numbers of beads (beads,), numbers of frames (frames,). phases_per_cycle: 0: one "
+      "more than the largest phase. box: a Box, or the lengths (x, z) or (x, y, z) of a periodic one; "
+      "without it the cell is open on all sides. unwrap: positions along a period are unwrapped by the "
+      "shortest displacement from frame to frame, unless they extend beyond the period by more than two "
+      "bead diameters, as unwrapped positions do; False keeps them as they are given. Arrays are copied."));
 }
 
 }  // namespace twincell::python

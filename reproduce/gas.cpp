@@ -28,9 +28,6 @@ constexpr double kSigmaMetres = 0.005, kGravity = 9.81;
 /// Largest fraction of time in contact at which the beads count as a gas.
 constexpr double kHard = 0.1;
 
-/// The start of the drive as the paper has it: beads at rest, and a base that vibrates as A sin(omega t).
-constexpr const char* kAbrupt = "drive.start = \"abrupt\"";
-
 std::vector<int> coarse_rpm() {
   return {300, 400, 500, 600, 700, 800, 900, 1000, 1200, 1500, 2000, 2500, 3000, 3500, 4000};
 }
@@ -507,7 +504,7 @@ std::optional<Estimate> flat_from(const Series& s, bool errors_count) {
 }
 
 std::optional<double> w_2_of(const std::vector<GasPoint>& points) {
-  const auto from = flat_from(series_of("", points, "T_bar_z"), false);
+  const auto from = flat_from(series_of("", points, "T_bar_z"), true);
   return from ? std::optional(from->value) : std::nullopt;
 }
 

@@ -22,6 +22,9 @@ double w_of_rpm(double rpm);
 /// The paper's frequencies, 300 to 4000 rpm in steps of 100.
 std::vector<int> all_rpm();
 
+/// The start of the drive as the paper has it: beads at rest, and a base that vibrates as A sin(omega t).
+inline constexpr const char* kAbrupt = "drive.start = \"abrupt\"";
+
 /// One of the canonical systems of Fig. 2.
 struct GasSystem {
   int dimension;
@@ -185,7 +188,7 @@ std::optional<Peak> peak_of(const std::vector<GasPoint>& points);
 /// to this point; empty for an empty series. \param errors_count accept points whose interval reaches into
 /// this range
 std::optional<Estimate> flat_from(const Series& s, bool errors_count);
-/// W_2: smallest W from which T_bar_z stays within 5 % of its value at the largest W.
+/// W_2: smallest W from which T_bar_z stays within 5 % of its value at the largest W, errors counted.
 std::optional<double> w_2_of(const std::vector<GasPoint>& points);
 
 /// T_bar_z(W) of the rough systems by the printed fits of the paper's Table III.

@@ -70,20 +70,31 @@ std::optional<Estimate> slope_of(const StrengthSweep& sweep, double above, doubl
   return fit ? std::optional(parameter(*fit, "alpha")) : std::nullopt;
 }
 
-struct Slopes {
-  std::optional<Estimate> a1, a2, b;
-};
-Slopes slopes_of(const StrengthSweep& crystal) {
-  if (!crystal.first_slips || !crystal.convection) return {};
-  const double a1 = *crystal.first_slips->low, a2 = *crystal.first_slips->high, b = crystal.convection->value;
-  return {slope_of(crystal, 0, a1), slope_of(crystal, a2, b), slope_of(crystal, b, 1e300)};
-}
-
-/// Two power laws that meet, from random beds.
+/// Two power laws that meet, over a range of K_m.
 std::optional<calibration::CurveFit> bend_of(const StrengthSweep& sweep, double above = 0,
                                              double below = 1e300) {
   const auto points = points_of(sweep, above, below);
   return points.size() >= 6 ? fitted("slope_break", points) : std::nullopt;
+}
+
+struct Slopes {
+  std::optional<Estimate> a1, a2, b;
+  std::optional<Estimate> bend_1, bend_2;  ///< K_m of the bend of A1 and A2 together, and of A2 and B
+};
+Slopes slopes_of(const StrengthSweep& crystal) {
+  if (!crystal.first_slips || !crystal.convection) return {};
+  const double a1 = *crystal.first_slips->low, a2 = *crystal.first_slips->high, b = crystal.convection->value;
+  const auto bend = [&](double above, double below) -> std::optional<Estimate> {
+    const auto fit = bend_of(crystal, above, below);
+    return fit ? std::optional(parameter(*fit, "x_b")) : std::nullopt;
+  };
+  return {slope_of(crystal, 0, a1), slope_of(crystal, a2, b), slope_of(crystal, b, 1e300), bend(0, b),
+          bend(a2, 1e300)};
+}
+
+/// Whether a bend lies at the border of two regions.
+Verdict bends_at(const std::optional<Estimate>& bend, const Estimate& border) {
+  return bend ? agree(*bend, border, kBreakError) : Verdict::inconclusive;
 }
 
 /// Whether the place of the bend is a property of the curve or of the window in which it is fitted: the bends
@@ -136,17 +147,24 @@ std::vector<Target> targets_of(const HeightSweeps& all, const std::optional<cali
   targets.push_back(at);
   targets.push_back(same);
   targets.push_back(rise_of(all.crystal));
-  Target three{"(b) crystal: three slopes A1, A2, B", "each differs from its neighbour", "", Verdict::absent,
-               ""};
+  Target three{"(b) crystal: three slopes A1, A2, B",
+               "each differs from its neighbour, and the curve bends where one region ends, within K_m 0.8",
+               "", Verdict::absent, ""};
   const Slopes s = slopes_of(all.crystal);
   const auto text = [](const std::optional<Estimate>& e) { return e ? e->text() : "too few points"; };
   if (s.a1 || s.a2 || s.b) {
-    three.measured =
-        fmt::format("A1 {}, A2 {}, B {}; A1 ends at K_m {}, B begins at K_m {}", text(s.a1), text(s.a2),
-                    text(s.b), all.crystal.first_slips->text(), all.crystal.convection->text());
+    three.measured = fmt::format(
+        "A1 {}, A2 {}, B {}; A1 ends at K_m {}, the bend of A1 and A2 together: {}; B begins at K_m {}, the "
+        "bend "
+        "of A2 and B: {}",
+        text(s.a1), text(s.a2), text(s.b), all.crystal.first_slips->text(), text(s.bend_1),
+        all.crystal.convection->text(), text(s.bend_2));
     three.verdict =
-        s.a1 && s.a2 && s.b ? all_of({differ(*s.a1, *s.a2), differ(*s.a2, *s.b)}) : Verdict::inconclusive;
-    if (three.verdict == Verdict::inconclusive) three.reason = "neighbouring intervals overlap";
+        s.a1 && s.a2 && s.b
+            ? all_of({differ(*s.a1, *s.a2), differ(*s.a2, *s.b), bends_at(s.bend_1, *all.crystal.first_slips),
+                      bends_at(s.bend_2, *all.crystal.convection)})
+            : Verdict::inconclusive;
+    if (three.verdict == Verdict::fail) three.reason = "the slope changes everywhere, not at the borders";
   } else {
     three.reason = "slips or convection not found in the sweep";
   }

@@ -26,7 +26,7 @@ struct Size {
 };
 constexpr int kPaperLayers = 60;
 const Size& size_for(const Request& request) {
-  static constexpr std::array<Size, 4> all = {{{0, 20, 1}, {0.5, 20, 4}, {2, 60, 8}, {1e300, 60, 40}}};
+  static constexpr std::array<Size, 4> all = {{{0, 20, 1}, {0.5, 20, 4}, {2, 60, 32}, {1e300, 60, 40}}};
   if (request.full) return all.back();
   const Size* chosen = &all.front();
   for (const Size& size : all)

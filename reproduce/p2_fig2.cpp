@@ -77,8 +77,14 @@ Target shape_of(const GasSystem& system, const std::vector<GasPoint>& points) {
     verdicts.push_back(above(*top->get("T_bar_z"), *last->get("T_bar_z")));
   t.measured =
       fmt::format("largest, {:.4g}, at W_f = {:.3g} (grid point {:.4g})", peak->height, peak->w, peak->grid);
-  if (const auto w_2 = w_2_of(points))
+  if (const auto w_2 = w_2_of(points)) {
     t.measured += fmt::format("; within 5 % of its last value from W_2 = {:.3g} on", *w_2);
+    // Every series is near its last value at the end; a constant has to last.
+    constexpr double kConstantFrom = 2.0 / 3;
+    const bool lasts = *w_2 <= kConstantFrom * points.back().at;
+    verdicts.push_back(lasts ? Verdict::pass : Verdict::inconclusive);
+    if (!lasts) t.reason = "it still falls in the last third of W";
+  }
   t.verdict = all_of(verdicts);
   return t;
 }

@@ -87,7 +87,8 @@ void add_targets(std::vector<Target>& targets, const Fitted& f, bool coefficient
                                           : Verdict::inconclusive;
     if (signs.verdict == Verdict::inconclusive) signs.reason = "so few or so noisy points do not show it";
   }
-  if (f.algebraic) curve.counted_in = "p2-fig2";  // which compares the points with the same curve
+  if (f.algebraic)
+    curve.not_counted = "the points are those of `p2-fig2`";  // which compares the points with the same curve
   // Table III has the coefficients of the fits that Fig. 8 shows; each fit is judged once.
   if (!coefficients) {
     targets.insert(targets.end(), {curve, close, signs});

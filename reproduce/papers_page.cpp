@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "reproduce/verdict.hpp"
 
@@ -40,7 +41,7 @@ constexpr std::array<Paper, 2> kPapers = {
 std::map<std::string, int> counts_of(const json& document) {
   std::map<std::string, int> counts;
   for (const json& t : document.at("targets"))
-    if (t.value("counted_in", "").empty()) ++counts[t.at("verdict").get<std::string>()];
+    if (t.value("not_counted", "").empty()) ++counts[t.at("verdict").get<std::string>()];
   return counts;
 }
 
@@ -49,6 +50,22 @@ std::string row_of_counts(const std::string& name, std::map<std::string, int> co
   std::string s = fmt::format("| {} |", name);
   for (const auto& verdict : kVerdicts) s += fmt::format(" {} |", counts[std::string(verdict.word)]);
   return s + fmt::format(" {} |\n", cost);
+}
+
+/// The figures of an entry with their captions, then the conditions and simplifications.
+std::string below_the_table(const std::string& entry, const json& document) {
+  std::string s;
+  for (const json& f : document.value("figures", json::array())) {
+    const std::string name = f.at("name").get<std::string>();
+    s += fmt::format("\n![{0}]({1}/{0}.svg)\n\n*{0}*: {2}\n", name, entry, cell(f.value("caption", "")));
+  }
+  for (const auto& [key, title] : {std::pair{"conditions", "Conditions"}, {"cheaper", "Simplifications"}}) {
+    std::string all;
+    for (const json& one : document.value(key, json::array()))
+      all += fmt::format("{}{}", all.empty() ? "" : "; ", cell(one.get<std::string>()));
+    if (!all.empty()) s += fmt::format("\n{}: {}.\n", title, all);
+  }
+  return s;
 }
 
 }  // namespace
@@ -67,14 +84,11 @@ std::string papers_page(const std::vector<Document>& documents, const std::strin
       "| verdict | meaning |\n|---|---|\n";
   for (const auto& verdict : kVerdicts) s += fmt::format("| {} | {} |\n", verdict.word, verdict.help);
   s += "\nStatements about an order use the interval of the difference. A statement about a count or about "
-       "bits has no interval.\nEach target is counted once. Entries that judge the targets of other figures "
-       "again, "
-       "under other assumptions, or that ask what\nthe papers do not state, are not in the sum; nor is a "
-       "single "
-       "target that another entry counts, which its verdict names.\nThe cost is the processor time of the "
-       "runs that "
-       "the figure uses; \"–\" means that it was not recorded.\nFigures that share runs each state it "
-       "in whole.\n\n## Summary\n\n| |";
+       "bits has no interval.\nThe sum counts each statement of the papers about a result once. It leaves "
+       "out entries that check the program (tables of\nparameters, closed forms), entries that judge the "
+       "targets of other figures under other assumptions, and single targets whose\nverdict says why.\n"
+       "The cost is the processor time of the runs that a figure uses; \"–\" means that it was not recorded. "
+       "Figures that share runs\neach state the whole cost.\n\n## Summary\n\n| |";
   for (const auto& verdict : kVerdicts) s += fmt::format(" {} |", verdict.word);
   s += " core-minutes |\n|---|";
   for (std::size_t k = 0; k <= kVerdicts.size(); ++k) s += "---|";
@@ -100,11 +114,12 @@ std::string papers_page(const std::vector<Document>& documents, const std::strin
            "|---|---|---|---|---|---|\n";
       for (const json& t : document.at("targets")) {
         const auto text = [&](const char* key) { return cell(t.value(key, "")); };
-        const std::string counted_in = text("counted_in");
+        const std::string not_counted = t.value("not_counted", "");
         s += fmt::format("| {} | {} | {} | {} | {}{} | {} |\n", text("name"), text("expected"),
                          text("measured").empty() ? "–" : text("measured"), text("runs"), text("verdict"),
-                         counted_in.empty() ? "" : ", counted in `" + counted_in + "`", text("reason"));
+                         not_counted.empty() ? "" : "; not in the sum: " + not_counted, text("reason"));
       }
+      s += below_the_table(documents[k].name, document);
     }
   }
   return s;

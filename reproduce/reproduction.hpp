@@ -22,9 +22,10 @@ struct Target {
   std::string expected;  ///< "1.10 to 1.35"
   std::string measured;  ///< with interval
   Verdict verdict = Verdict::absent;
-  std::string reason;           ///< what decides the verdict, if needed
-  std::string runs = {};        ///< seeds and cycles behind the number; empty: Reproduction::runs
-  std::string counted_in = {};  ///< entry whose target says the same and is in the sum; empty: this one is
+  std::string reason;     ///< what decides the verdict, if needed
+  std::string runs = {};  ///< seeds and cycles behind the number; empty: Reproduction::runs
+  /// Why the target is not in the sum of papers.md: "the same as in `p1-fig3`"; empty: it is.
+  std::string not_counted = {};
 };
 
 /// Budget and options of a reproduction.
@@ -70,9 +71,10 @@ struct Reproducible {
   double worth = 1;              ///< share of the time of `reproduce --all`, relative to the others
   std::string runs_like = {};    ///< entry whose runs this one needs: `--all` gives it the same budget for
                                  ///< them, and no time of its own
-  bool judges_again = false;     ///< its targets are those of other figures, under other assumptions, or no
-                                 ///< statement of the papers: papers.md does not count them twice
-  std::string same_as = {};      ///< entry with the same targets: `--all` leaves this one out
+  /// Its targets are those of other figures under other assumptions, or checks of the program, and no
+  /// statements of the papers about results: papers.md leaves them out of its sum.
+  bool judges_again = false;
+  std::string same_as = {};  ///< entry with the same targets: `--all` leaves this one out
 };
 /// All reproductions. To add one: its file with its test, and its word in the list of list.cpp.
 const std::vector<Reproducible>& list();

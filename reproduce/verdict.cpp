@@ -47,6 +47,26 @@ Verdict agree(const Estimate& a, const Estimate& b, double tolerance) {
   return judge(difference(a, b), -tolerance, tolerance);
 }
 
+Trend trend_of(const std::vector<Estimate>& series, bool rising) {
+  if (series.size() < 2) return {};
+  const auto clearly_above = [](const Estimate& a, const Estimate& b) {
+    if (!a.low || !b.high) return -kUnbounded;
+    const double half = (a.value - *a.low + *b.high - b.value) / 2;
+    return *a.low - *b.high - half;
+  };
+  Trend trend{.verdict =
+                  rising ? above(series.back(), series.front()) : above(series.front(), series.back())};
+  double most = 0;
+  for (std::size_t j = 1; j < series.size(); ++j)
+    for (std::size_t i = 0; i < j; ++i) {
+      const double by = rising ? clearly_above(series[i], series[j]) : clearly_above(series[j], series[i]);
+      if (by <= most) continue;
+      most = by;
+      trend = {.verdict = Verdict::fail, .against = std::pair(i, j)};
+    }
+  return trend;
+}
+
 Verdict differ(const Estimate& a, const Estimate& b) {
   const bool separate = above(a, b) == Verdict::pass || above(b, a) == Verdict::pass;
   return separate ? Verdict::pass : Verdict::inconclusive;

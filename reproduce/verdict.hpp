@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/choice.hpp"
@@ -58,6 +59,17 @@ Verdict judge(const Estimate& measured, double low, double high);
 Verdict above(const Estimate& a, const Estimate& b);
 /// The rule for "a is b within a tolerance": that of difference(a, b) for the target [-tolerance, tolerance].
 Verdict agree(const Estimate& a, const Estimate& b, double tolerance);
+/// A rise or a fall of a series.
+struct Trend {
+  Verdict verdict = Verdict::absent;
+  /// Indices of the two elements between which the series goes furthest against the trend, if it clearly
+  /// does.
+  std::optional<std::pair<std::size_t, std::size_t>> against = {};
+};
+/// The rule for "the series rises" (or falls): that of above() for its ends, but fail if some later element
+/// is below (above) an earlier one by more than their intervals, each wider by half, hold: among hundreds of
+/// pairs some have separate 95 % intervals by chance. Absent for fewer than two elements.
+Trend trend_of(const std::vector<Estimate>& series, bool rising);
 /// The rule for "a differs from b", which no interval can refute: pass if the intervals are separate, else
 /// inconclusive.
 Verdict differ(const Estimate& a, const Estimate& b);

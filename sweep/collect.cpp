@@ -93,7 +93,7 @@ json onset_json(const Plan& plan, const Curve& curve, const json& points) {
   return {{"axes", axes_of(plan, curve.values)},
           {"conditions", conditions_of_onset(points)},
           {"key", plan.search->key},
-          {"verdict", plan.verdict->name},
+          {"verdict", plan.criterion->name},
           {"value", optional(o.value)},
           {"low", optional(o.low)},
           {"high", optional(o.high)},
@@ -401,7 +401,7 @@ std::string collected_text(const Schedule& schedule) {
     for (std::size_t a = 0; a < plan.axes.size(); ++a)
       if (plan.axes[a].values.size() > 1)
         place += fmt::format("{} = {}, ", plan.axes[a].key, shown(curve.values[a]));
-    text += fmt::format("{}{} from {} {}{}\n", place, plan.verdict->name, plan.search->key,
+    text += fmt::format("{}{} from {} {}{}\n", place, plan.criterion->name, plan.search->key,
                         curve.onset->text(), shortfall(curve, *plan.search));
   }
   return text + failures_text(schedule) + grid_table(schedule);

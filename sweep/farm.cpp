@@ -96,11 +96,12 @@ class Farm {
   /// Particle-steps per second of one worker, analysis included; NaN until a point is done.
   [[nodiscard]] double rate() const { return seconds_ > 0 ? work_ / seconds_ : kUnknown; }
 
-  /// Largest work, in particle-steps, that fits into the time left. Unlimited while the speed is unknown.
-  [[nodiscard]] double most_work() const {
+  /// Largest work, in particle-steps, that fits into the time left. Absent without a limit, and while the
+  /// speed is unknown.
+  [[nodiscard]] std::optional<double> most_work() const {
     const double left = watch_.time_left();
-    if (left <= 0) return -1;
-    return std::isnan(rate()) || left > 1e200 ? 1e300 : left * rate();
+    if (std::isnan(rate()) || left >= Watch::kNoTimeLimit) return std::nullopt;
+    return left * rate();
   }
 
   void work() try {
@@ -113,17 +114,17 @@ class Farm {
     StageTimes own;
     StageTimes* const times = options_.times != nullptr ? &own : nullptr;
     std::unique_lock lock(mutex_);
-    while (!closing_) {
+    while (!closing_ && watch_.time_left() > 0) {
       std::optional<Task> task;
       Schedule* schedule = nullptr;
-      const double most = most_work();
+      const std::optional<double> most = most_work();
       for (Schedule* s : in_turn())
         if (!task) {
           task = s->take(most);
           schedule = s;
         }
       if (!task) {
-        if (all() || most < 0 || nothing_will_come()) break;
+        if (all() || nothing_will_come()) break;
         const Stage waiting(times, "waiting for points");
         changed_.wait_for(lock, 100ms);
         continue;
@@ -182,8 +183,7 @@ class Farm {
 
   /// Whether no point runs here and the time is limited, so that no open point fits into the time left.
   [[nodiscard]] bool nothing_will_come() const {
-    if (busy_ > 0 || watch_.time_left() > 1e200) return false;
-    return true;
+    return busy_ == 0 && watch_.time_left() < Watch::kNoTimeLimit;
   }
 
   const std::vector<Schedule*>& schedules_;

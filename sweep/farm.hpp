@@ -16,11 +16,13 @@ namespace twincell::sweep {
 class Watch {
  public:
   virtual ~Watch() = default;
-  /// Receives the progress several times a second, in the calling thread. May throw Interrupted. \param
-  /// seconds_left estimate from the speed so far; NaN until the first point is done
+  /// Receives the progress several times a second, in the calling thread. May throw Interrupted.
+  /// \param seconds_left estimate from the speed so far; NaN until the first point is done
   virtual void look(const Counts& /*counts*/, double /*seconds_left*/) {}
+  /// A remaining time of this length, s, or longer is no limit.
+  static constexpr double kNoTimeLimit = 1e200;
   /// Remaining time in seconds; points that would take longer are not started.
-  [[nodiscard]] virtual double time_left() const { return 1e300; }
+  [[nodiscard]] virtual double time_left() const { return kNoTimeLimit; }
   /// Receives, when run_here ends, the processor time of all results of its schedules, those of earlier calls
   /// included, in seconds; NaN if a result does not state it.
   virtual void cost(double /*processor_seconds*/) {}
@@ -36,18 +38,20 @@ struct FarmOptions {
   sim::SolverKind solver = sim::SolverKind::best;
 };
 
-/// Checks that the open points with the largest memory demand can run at once. Later rounds of a search count
-/// with the ends of the search range. \param together number of points that run at once on this machine
-/// \param way option that sets this number, for the message \param available bytes \throws ConfigError naming
-/// `way`, or the key of the number of beads if a single point needs too much
+/// Checks that the open points with the largest memory demand can run at once. The points of later rounds of
+/// a search, which are not known yet, are counted with the larger demand of the two ends of the search range.
+/// \param together number of points that run at once on this machine
+/// \param way option that sets this number, for the message
+/// \param available memory of the machine, bytes
+/// \throws ConfigError naming `way`, or the key of the number of beads if a single point needs too much
 void require_memory_together(const Schedule& schedule, int together, const std::string& way,
                              double available = memory_available());
 
 /// Computes the points of the schedules until all are done or no remaining point fits into the time left.
 /// Once a point is done, those that exceed the time limit by more than 5 s and 5 % of the time are ended and
-/// stay open.
-/// Without a time limit it waits for points that other processes compute. \returns whether all points are
-/// done \throws Interrupted, NotStored, InputError, ConfigError
+/// stay open. Without a time limit it waits for points that other processes compute.
+/// \returns whether all points are done
+/// \throws Interrupted, NotStored, InputError, ConfigError
 bool run_here(const std::vector<Schedule*>& schedules, const Store& store, const FarmOptions& options,
               Watch& watch);
 

@@ -18,15 +18,18 @@ class LiveTrajectory : public TrajectorySource {
   /// there.
   using Watcher = std::function<bool(const Frame& frame)>;
 
-  /// Settles the bed before the first frame. \param name for messages \param times receives the times of the
-  /// stages of the simulation; null: not timed \throws RunError, Interrupted
+  /// Settles the bed before the first frame.
+  /// \param name for messages
+  /// \param times receives the times of the stages of the simulation; null: not timed
+  /// \throws RunError, Interrupted
   LiveTrajectory(sim::Simulation& run, std::string name, Progress& progress, Watcher watcher,
                  StageTimes* times = nullptr);
 
   [[nodiscard]] const TrajectoryInfo& info() const override { return info_; }
   /// Number of frames of the whole run, or up to the frame where the watcher ended it.
   [[nodiscard]] std::size_t n_frames() const override { return n_frames_; }
-  /// \pre index is that of the last frame read, or the next one \throws RunError, Interrupted
+  /// \pre index is that of the last frame read, or the next one
+  /// \throws RunError, Interrupted
   void read(std::size_t index, Frame& frame) const override;
   [[nodiscard]] std::string name() const override { return name_; }
 

@@ -42,8 +42,10 @@ struct Onset {
 /// upper bound gives a single change of answer little weight: about four agreeing runs on either side are
 /// needed before that side of the interval is closed. mu is searched up to half a range beyond either end; an
 /// interval that extends beyond the range is open on that side. The same law that falls from yes to no is
-/// fitted too; if it is more likely by kLikelihoodDrop, the answers fall, and there is no onset. \param low,
-/// high range of the trials \param width wanted width of the interval \pre low < high, width > 0
+/// fitted too; if it is more likely by kLikelihoodDrop, the answers fall, and there is no onset.
+/// \param low, high range of the trials
+/// \param width wanted width of the interval
+/// \pre low < high, width > 0
 Onset estimate_onset(const std::vector<Trial>& trials, double low, double high, double width);
 
 /// Positions of the next `batch` runs: the (i + 1/2)/batch quantiles of the likelihood of mu, so that runs
@@ -54,7 +56,8 @@ std::vector<double> next_places(const Onset& onset, double low, double high, dou
 /// Likelihood-ratio statistic against the hypothesis that `upper` is not above `lower`: 2 ln(L_max/L), where
 /// L is the largest joint likelihood of two independent onsets with mu_upper <= mu_lower. It is 0 if that
 /// hypothesis fits best. A value above kLikelihoodDrop excludes it, also where the two intervals overlap
-/// slightly. \pre both have a profile
+/// slightly.
+/// \pre both have a profile
 double evidence_above(const Onset& upper, const Onset& lower);
 
 /// Whether the search is finished: the interval is closed and not wider than `width`, or a one-sided limit

@@ -51,7 +51,7 @@ void know(const ConfigSection& table, const std::string& path) {
   static_cast<void>(table.has(path));
 }
 
-Verdict read_verdict(const ConfigSection& s) {
+Criterion read_criterion(const ConfigSection& s) {
   const auto word = s.word("verdict", {"bouncing", "convecting"});
   const auto result = s.text("result");
   const auto above = s.number("above");
@@ -173,9 +173,9 @@ void read_results(Plan& plan, const ConfigSection& root) {
   if (plan.results.empty())
     throw ConfigError(where, "the list is empty; without this key the sweep computes all results.");
   for (const std::string& name : plan.results) require_result(where, name);
-  if (plan.verdict &&
-      std::find(plan.results.begin(), plan.results.end(), plan.verdict->result) == plan.results.end())
-    plan.results.push_back(plan.verdict->result);
+  if (plan.criterion &&
+      std::find(plan.results.begin(), plan.results.end(), plan.criterion->result) == plan.results.end())
+    plan.results.push_back(plan.criterion->result);
 }
 
 Plan interpret(const Config& config, const std::string& name, const fs::path& folder) {
@@ -193,13 +193,13 @@ Plan interpret(const Config& config, const std::string& name, const fs::path& fo
   read_scene_of(plan, root, folder);
   if (root.has("search")) {
     plan.search = read_search(root.section("search"));
-    plan.verdict = read_verdict(root.section("search"));
+    plan.criterion = read_criterion(root.section("search"));
   }
   read_axes(plan, root);
   read_results(plan, root);
   config.refuse_unknown_keys();
   if (plan.stop_early &&
-      (!plan.verdict || (plan.verdict->name != "bouncing" && plan.verdict->name != "convecting")))
+      (!plan.criterion || (plan.criterion->name != "bouncing" && plan.criterion->name != "convecting")))
     throw ConfigError(
         root.where("stop_early"),
         "needs a search with the verdict \"bouncing\" or \"convecting\", which a run can decide early.");
@@ -237,7 +237,7 @@ namespace {
 /// points; empty if there is none.
 std::string definitions_of(const Plan& plan) {
   std::vector<std::string> wanted = plan.results.empty() ? analysis::result_names() : plan.results;
-  if (plan.verdict) wanted.push_back(plan.verdict->result);
+  if (plan.criterion) wanted.push_back(plan.criterion->result);
   std::set<std::string> changed;
   for (const std::string& name : wanted)
     if (const int definition = analysis::named_result(name).definition; definition > 1)
@@ -277,8 +277,8 @@ Point make_point(const Plan& plan, const std::vector<std::string>& values, std::
   std::string content = point.scene;
   if (!scene.from.empty()) content += "\n# from " + sha256_of(scene.from);
   if (!plan.results.empty()) content += fmt::format("\n# results {}", fmt::join(plan.results, ","));
-  if (plan.verdict)
-    content += fmt::format("\n# verdict {} {}{}", plan.verdict->result, plan.verdict->above,
+  if (plan.criterion)
+    content += fmt::format("\n# verdict {} {}{}", plan.criterion->result, plan.criterion->above,
                            plan.stop_early ? ", stop early" : "");
   if (const std::string definitions = definitions_of(plan); !definitions.empty())
     content += "\n# definitions " + definitions;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Plan of a sweep: a base scene, the axes along which it is varied, and either a grid or a search for the
-/// onset where a verdict changes. docs/sweeps.md lists every key.
+/// onset where the answer to a criterion changes. docs/sweeps.md lists every key.
 
 #include <cstdint>
 #include <filesystem>
@@ -19,13 +19,13 @@ struct Axis {
 };
 
 /// A yes-or-no question: whether the scalar `result` of the analysis exceeds `above`.
-struct Verdict {
+struct Criterion {
   std::string name;    ///< "bouncing", "convecting", or the result's own name
   std::string result;  ///< "s_b", "s_c", ...
   double above = 0;
 };
 
-/// A search along one more axis for the onset, where the verdict changes from no to yes.
+/// A search along one more axis for the onset, where the answer to the criterion changes from no to yes.
 struct Search {
   std::string key;           ///< "drive.gamma"
   double low = 0, high = 0;  ///< search range
@@ -44,22 +44,26 @@ struct Plan {
   std::uint64_t seed = 1;              ///< master seed
   std::vector<Axis> axes;              ///< in the order of their keys
   int seeds = 1;                       ///< runs per set of axes of a grid
-  std::optional<Verdict> verdict;
+  std::optional<Criterion> criterion;  ///< search.verdict, or search.result and search.above
   std::optional<Search> search;
-  bool stop_early = false;           ///< end a run when its verdict is decided (stop_rule.hpp)
+  bool stop_early = false;           ///< end a run when its criterion is decided (stop_rule.hpp)
   std::vector<std::string> results;  ///< names of the wanted results; empty: all
   std::vector<std::string> doubts;   ///< sentences on values that are possible but hardly meant
 };
 
-/// Reads a plan. \throws InputError, ConfigError naming file, line, key, value and bound
+/// Reads a plan.
+/// \throws InputError, ConfigError naming file, line, key, value and bound
 Plan read_plan(const std::filesystem::path& path);
-/// The same from text. \param folder folder of the scene's file
+/// The same from text.
+/// \param folder folder of the scene's file
 Plan read_plan_text(const std::string& text, const std::string& name,
                     const std::filesystem::path& folder = ".");
 
 /// One run of a sweep.
 struct Point {
-  std::string id;  ///< 16 hex digits: hash of the scene, its start file, and the wanted results
+  /// 16 hex digits: hash of the resolved scene, its start file, the wanted results, the criterion with its
+  /// threshold and stop_early, and the definition numbers of the results (NamedResult::definition).
+  std::string id;
   std::vector<std::string> values;  ///< values of the axes, in their order, as TOML
   std::optional<double> at;         ///< value of the search's key
   int replica = 0;                  ///< index among the runs that differ only in the seed

@@ -84,9 +84,9 @@ sim::RunState placed_in_turn(const sim::Scene& scene, Progress& progress) {
   }
 }
 
-/// Value of the plan's verdict quantity; NaN if the run has none.
+/// Value of the result of the plan's criterion; NaN if the run has none.
 double asked_of(const Plan& plan, const std::vector<analysis::Result>& results) {
-  const analysis::Result& result = analysis::find_result(results, plan.verdict->result);
+  const analysis::Result& result = analysis::find_result(results, plan.criterion->result);
   if (!result.shape.empty() || !result.text.empty())
     throw ConfigError({.file = plan.file, .key = "search.result"},
                       fmt::format("'{}' is {}; a search compares one number", result.name,
@@ -99,7 +99,7 @@ double asked_of(const Plan& plan, const std::vector<analysis::Result>& results) 
 std::string run_point(const Plan& plan, const Point& point, const std::filesystem::path& trajectory,
                       Progress& progress, StageTimes* times, sim::SolverKind solver) {
   const auto begin = std::chrono::steady_clock::now();
-  const double cpu_begin = cpu_seconds();
+  const double cpu_begin = thread_cpu_seconds();
   nlohmann::json document = {{"id", point.id}, {"answer", nullptr}};
   std::int64_t cycles = 0;
   try {
@@ -117,7 +117,7 @@ std::string run_point(const Plan& plan, const Point& point, const std::filesyste
     const Observer observer{
         .begin =
             [&](const TrajectoryInfo& info) {
-              if (plan.stop_early && plan.verdict) rule.emplace(*plan.verdict, info, all_cycles);
+              if (plan.stop_early && plan.criterion) rule.emplace(*plan.criterion, info, all_cycles);
               if (trajectory.empty()) return;
               TrajectoryInfo kept = info;
               Provenance provenance;
@@ -130,7 +130,7 @@ std::string run_point(const Plan& plan, const Point& point, const std::filesyste
             [&](const Frame& frame) {
               cycles = frame.cycle + 1;
               if (writer) on_disk([&] { writer->append(frame); });
-              return !rule || !rule->settled(frame);
+              return !rule || !rule->add_frame(frame);
             }};
     analysis::AnalysisOptions options;
     options.only = plan.results;
@@ -142,22 +142,22 @@ std::string run_point(const Plan& plan, const Point& point, const std::filesyste
     if (measured.rest_height) document["rest_height"] = *measured.rest_height;
     if (measured.contact_fraction) document["contact_fraction"] = *measured.contact_fraction;
     if (rule && !rule->reason().empty()) document["stopped"] = rule->reason();
-    if (plan.verdict)
+    if (plan.criterion)
       if (const double value = asked_of(plan, results); std::isfinite(value))
-        document["answer"] = value > plan.verdict->above;
+        document["answer"] = value > plan.criterion->above;
   } catch (const RunError& e) {
     document["failed"] = e.what();
   } catch (const DiskTrouble& e) {
     throw Error(e.error);
   }
   document["n_cycles"] = cycles;
-  const nlohmann::json program = nlohmann::json::parse(Provenance{}.to_json());
+  const nlohmann::json provenance = nlohmann::json::parse(Provenance{}.to_json());
   document["computed"] = {
       {"seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()},
       {"program", version_line()}};
-  if (solver != sim::SolverKind::gpu) document["computed"]["processor_seconds"] = cpu_seconds() - cpu_begin;
-  for (const char* key : {"date", "time", "utc", "cpu", "processor"})
-    if (program.contains(key)) document["computed"][key] = program[key];
+  if (solver != sim::SolverKind::gpu)
+    document["computed"]["processor_seconds"] = thread_cpu_seconds() - cpu_begin;
+  for (const char* key : {"utc", "processor"}) document["computed"][key] = provenance.at(key);
   return json_text(document) + "\n";
 }
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/motion/centre_of_mass.hpp"
 #include "trajectory/temperature.hpp"
 
 namespace twincell::sweep {

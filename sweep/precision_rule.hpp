@@ -23,9 +23,11 @@ namespace twincell::sweep {
 /// many checks, and at the cycle limit (cap).
 class PrecisionRule {
  public:
-  /// \pre scene.until is set \throws ConfigError listing the valid quantities
+  /// \pre scene.until is set
+  /// \throws ConfigError listing the valid quantities
   PrecisionRule(const sim::Scene& scene, const TrajectoryInfo& info);
-  /// Processes a frame of the run. \returns true at the last phase of a cycle when the precision is reached
+  /// Processes a frame of the run.
+  /// \returns true at the last phase of a cycle when the precision is reached
   bool reached(const Frame& frame);
   /// Whether the precision was reached at the last check.
   [[nodiscard]] bool is_reached() const { return reached_; }

@@ -61,7 +61,7 @@ Value value_of(const json& point, const std::string& result) {
   return v;
 }
 
-/// Unit of a key of the scene; empty for a pure number and for a key that is none of a scene.
+/// Unit of a key of the scene; empty for a pure number and for a key that is not of a scene.
 std::string unit_of_key(const std::string& key) {
   const auto& rows = sim::scene_keys().rows;
   const auto row = std::find_if(rows.begin(), rows.end(), [&](const KeyRow& r) { return r.key == key; });

@@ -120,7 +120,7 @@ void Schedule::advance(std::size_t index, std::size_t unseen) {
   }
 }
 
-std::optional<Task> Schedule::take(double most) {
+std::optional<Task> Schedule::take(std::optional<double> most) {
   struct Open {
     double work;
     std::size_t curve, number;
@@ -128,7 +128,7 @@ std::optional<Task> Schedule::take(double most) {
   std::vector<Open> open;
   for (std::size_t c = 0; c < curves_.size(); ++c)
     for (std::size_t i = 0; i < curves_[c].points.size(); ++i)
-      if (!curves_[c].results[i] && here_[c][i] == 0 && curves_[c].points[i].work <= most)
+      if (!curves_[c].results[i] && here_[c][i] == 0 && (!most || curves_[c].points[i].work <= *most))
         open.push_back({curves_[c].points[i].work, c, i});
   std::stable_sort(open.begin(), open.end(), [](const Open& a, const Open& b) { return a.work > b.work; });
   for (const Open& o : open) {
@@ -138,7 +138,7 @@ std::optional<Task> Schedule::take(double most) {
     store_.announce(plan_, point);
     // The previous owner of the claim may have finished after the results were read.
     if (const auto result = store_.result(point)) {
-      file(o.curve, o.number, *result);
+      enter_result(o.curve, o.number, *result);
       return take(most);
     }
     here_[o.curve][o.number] = 1;
@@ -147,7 +147,7 @@ std::optional<Task> Schedule::take(double most) {
   return std::nullopt;
 }
 
-void Schedule::file(std::size_t curve, std::size_t number, const std::string& result) {
+void Schedule::enter_result(std::size_t curve, std::size_t number, const std::string& result) {
   Curve& c = curves_[curve];
   c.results[number] = result;
   c.failed[number] = failed(result) ? 1 : 0;
@@ -156,7 +156,7 @@ void Schedule::file(std::size_t curve, std::size_t number, const std::string& re
 
 void Schedule::done(const Task& task, const std::string& result) {
   here_[task.curve][task.number] = 0;
-  file(task.curve, task.number, result);
+  enter_result(task.curve, task.number, result);
 }
 
 std::string Schedule::repeats_text() const {

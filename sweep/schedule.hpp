@@ -51,15 +51,17 @@ struct Curve {
 /// which process computes which point, or when. Not thread-safe.
 class Schedule {
  public:
-  /// Reads the results that are in the store. \throws ConfigError for a point with an invalid scene,
-  /// InputError for a damaged result
+  /// Reads the results that are in the store.
+  /// \throws ConfigError for a point with an invalid scene, InputError for a damaged result
   Schedule(const Plan& plan, const Store& store, Shard shard = {});
 
   /// Claims the longest open point that no process computes. Empty if there is none at present;
-  /// more can follow unless all() is true. \param most largest work of the point, particle-steps \throws
-  /// NotStored, InputError
-  std::optional<Task> take(double most = 1e300);
-  /// Enters the result of a task. \throws ConfigError
+  /// more can follow unless all() is true.
+  /// \param most largest work of the point, particle-steps; absent: no limit
+  /// \throws NotStored, InputError
+  std::optional<Task> take(std::optional<double> most = std::nullopt);
+  /// Enters the result of a task, which is then done.
+  /// \throws ConfigError for a point of the next round with an invalid scene
   void done(const Task& task, const std::string& result);
   /// Whether every point is done.
   [[nodiscard]] bool all() const;
@@ -73,7 +75,7 @@ class Schedule {
   [[nodiscard]] const Plan& plan() const { return plan_; }
 
  private:
-  void file(std::size_t curve, std::size_t number, const std::string& result);
+  void enter_result(std::size_t curve, std::size_t number, const std::string& result);
   void advance(std::size_t curve, std::size_t unseen);
 
   const Plan& plan_;
@@ -83,7 +85,7 @@ class Schedule {
   std::vector<std::vector<char>> here_;  ///< [curves][points] whether this process computes the point
 };
 
-/// Answer of a result; empty if the run failed or has no value of the verdict quantity.
+/// Answer of a result; empty if the run failed or has no value of the quantity of the criterion.
 std::optional<bool> answer_of(const std::string& result);
 
 }  // namespace twincell::sweep

@@ -14,7 +14,7 @@ namespace twincell::sweep {
 
 namespace {
 
-constexpr std::int64_t kFirstLook = 20, kLookEvery = 10;
+constexpr std::int64_t kFirstCheck = 20, kCheckEvery = 10;
 
 /// Upper estimate of the mean over `all` cycles of a series whose first cycles are known. The rest starts
 /// from the maximum of the later half and rises with the slope of its straight line plus three standard
@@ -44,8 +44,8 @@ double highest_mean(const std::vector<double>& y, std::int64_t all) {
 
 }  // namespace
 
-StopRule::StopRule(Verdict verdict, const TrajectoryInfo& info, std::int64_t cycles)
-    : verdict_(std::move(verdict)), cycles_(cycles) {
+StopRule::StopRule(Criterion criterion, const TrajectoryInfo& info, std::int64_t cycles)
+    : criterion_(std::move(criterion)), cycles_(cycles) {
   TrajectoryInfo own = info;
   own.columns = {.phase = true, .plate_height = true};
   own.radius.clear();
@@ -57,7 +57,7 @@ StopRule::StopRule(Verdict verdict, const TrajectoryInfo& info, std::int64_t cyc
   tracers_ = MemoryTrajectory(std::move(own));
 }
 
-bool StopRule::settled(const Frame& frame) {
+bool StopRule::add_frame(const Frame& frame) {
   Frame own;
   own.step = frame.step;
   own.time = frame.time;
@@ -69,39 +69,40 @@ bool StopRule::settled(const Frame& frame) {
   const std::int64_t done = frame.cycle + 1;
   if (frame.phase + 1 < tracers_.info().phases_per_cycle || done >= cycles_ || slots_.size() < 2)
     return false;
-  if (done >= kFirstLook && done % kLookEvery == 0) look();
+  if (done >= kFirstCheck && done % kCheckEvery == 0) decide();
   return !reason_.empty();
 }
 
-void StopRule::look() {
+void StopRule::decide() {
   analysis::AnalysisOptions options;
   options.only = {"s_b", "s_j"};
   const auto results = analysis::analyze(tracers_, options);
   const std::int64_t done = tracers_.frames().back().cycle + 1;
-  if (verdict_.result == "s_c") {
+  if (criterion_.result == "s_c") {
     const analysis::Result& s_j = analysis::find_result(results, "s_j");
     if (!s_j.present()) return;
     std::vector<double> squares;
     for (const double s : s_j.values)
       if (std::isfinite(s)) squares.push_back(s * s);
-    if (squares.size() < static_cast<std::size_t>(kFirstLook)) return;
-    const double bound = verdict_.above * verdict_.above;
+    if (squares.size() < static_cast<std::size_t>(kFirstCheck)) return;
+    const double bound = criterion_.above * criterion_.above;
     const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
     if (sum > static_cast<double>(cycles_) * bound)
       reason_ = fmt::format("after {} of {} cycles s_c exceeds {:g} whatever follows", done, cycles_,
-                            verdict_.above);
+                            criterion_.above);
     else if (const double most = highest_mean(squares, cycles_); 2 * done >= cycles_ && most < bound / 16)
       reason_ = fmt::format("after {} of {} cycles s_c is headed for at most {:.3g}, below a quarter of {:g}",
-                            done, cycles_, std::sqrt(most), verdict_.above);
+                            done, cycles_, std::sqrt(most), criterion_.above);
     return;
   }
   const analysis::Result& s_b = analysis::find_result(results, "s_b");
-  const bool clear = s_b.present() && s_b.interval &&
-                     (s_b.interval->low > 1.1 * verdict_.above || s_b.interval->high < 0.9 * verdict_.above);
+  const bool clear =
+      s_b.present() && s_b.interval &&
+      (s_b.interval->low > 1.1 * criterion_.above || s_b.interval->high < 0.9 * criterion_.above);
   clear_ = clear ? clear_ + 1 : 0;
   if (clear_ >= 2)
     reason_ = fmt::format("after {} of {} cycles s_b = {:.4g} [{:.4g}, {:.4g}] stays clear of {:.4g}", done,
-                          cycles_, s_b.value(), s_b.interval->low, s_b.interval->high, verdict_.above);
+                          cycles_, s_b.value(), s_b.interval->low, s_b.interval->high, criterion_.above);
 }
 
 }  // namespace twincell::sweep

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Early stop of a run whose verdict is decided before its last cycle.
+/// Early stop of a run whose answer is decided before its last cycle.
 
 #include <cstdint>
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace twincell::sweep {
 
-/// Analyses the tracers of a running bed every tenth cycle from the twentieth on, with s_b and s_j as in the
-/// analysis.
+/// Decides the criterion of a search while the bed runs. Analyses the tracers every tenth cycle from the
+/// twentieth on, with s_b and s_j as in the analysis.
 ///
 /// convecting, yes: decided once the sum of s_j^2 exceeds N_f times the squared threshold, independent of the
 /// remaining cycles (s_c^2 is the mean of s_j^2 over N_f cycles, Fortini & Huang 2015, eq. B2). convecting,
@@ -21,21 +21,24 @@ namespace twincell::sweep {
 /// of s_b is separated from the threshold by a tenth of it at two consecutive checks.
 class StopRule {
  public:
-  /// \param info metadata of the run \param cycles N_f
-  StopRule(Verdict verdict, const TrajectoryInfo& info, std::int64_t cycles);
-  /// Processes a frame of the run. \returns true when the verdict is decided, at the last phase of a cycle
-  bool settled(const Frame& frame);
-  /// Why the verdict is decided, in a sentence; empty before.
+  /// \param info metadata of the run
+  /// \param cycles N_f
+  StopRule(Criterion criterion, const TrajectoryInfo& info, std::int64_t cycles);
+  /// Adds the next frame of the run.
+  /// \returns whether the criterion is decided; true only at the last phase of a cycle
+  bool add_frame(const Frame& frame);
+  /// Why the criterion is decided, in a sentence; empty before.
   [[nodiscard]] const std::string& reason() const { return reason_; }
 
  private:
-  void look();
+  /// Decides from the frames so far, if they suffice.
+  void decide();
 
-  Verdict verdict_;
+  Criterion criterion_;
   std::int64_t cycles_;
   std::vector<std::size_t> slots_;
-  MemoryTrajectory tracers_;  ///< only the positions of the tracers: a twentieth of a bed
-  int clear_ = 0;             ///< consecutive checks at which s_b was separated from the threshold
+  MemoryTrajectory tracers_;  ///< the positions of the tracers only, to save memory
+  int clear_ = 0;  ///< number of consecutive analyses in which s_b was separated from the threshold
   std::string reason_;
 };
 

@@ -39,25 +39,29 @@ class Claim {
 class Store {
  public:
   enum class Access { read, write };
-  /// With write access, creates the folder. \throws ConfigError if it cannot be created or written to, or is
-  /// not the folder of a sweep
+  /// With write access, creates the folder.
+  /// \throws ConfigError if it cannot be created or written to, or is not the folder of a sweep
   explicit Store(std::filesystem::path folder, Access access = Access::write);
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   [[nodiscard]] std::filesystem::path of(const Point& point) const { return folder_ / "points" / point.id; }
-  /// Writes point.json unless it exists. \pre the point is claimed \throws NotStored
+  /// Writes point.json unless it exists.
+  /// \pre the point is claimed
+  /// \throws NotStored
   void announce(const Plan& plan, const Point& point) const;
-  /// The text of result.json if the point is done. \throws InputError if it is damaged or belongs to another
-  /// point
+  /// The text of result.json if the point is done.
+  /// \throws InputError if it is damaged or belongs to another point
   [[nodiscard]] std::optional<std::string> result(const Point& point) const;
   /// Claims a point; empty if another process has claimed it. On file systems without locks every process
-  /// gets the claim; two processes would then write the same bytes, one after the other. \throws NotStored
+  /// gets the claim; two processes would then write the same bytes, one after the other.
+  /// \throws NotStored
   [[nodiscard]] std::optional<Claim> claim(const Point& point) const;
   /// Whether a process computes the point now.
   [[nodiscard]] bool claimed(const Point& point) const;
   /// The identifiers of all points with a result, of this plan or another.
   [[nodiscard]] std::vector<std::string> finished() const;
-  /// Writes result.json. \throws NotStored
+  /// Writes result.json.
+  /// \throws NotStored
   void keep(const Point& point, const std::string& result) const;
 
  private:

@@ -7,6 +7,7 @@ words=(
   'reckon:compute' 'dearer:more expensive' 'huddle:cluster' 'whoever:(name the subject)' 'encounter:collision'
   'spool:store' 'barycentre:centre of mass' 'catch_up:advance' 'rouse:activate' 'held against:checked against'
   'is no whole number:is not a whole number' 'is no error:is not an error' 'otherwise called:called by other names'
+  'usual bead:bead of median radius' 'begin anew:start over' 'begins anew:starts over' 'afresh:without history' 'hopeless:(state why)'
 )
 found=0
 for entry in "${words[@]}"; do

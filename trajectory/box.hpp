@@ -26,13 +26,14 @@ enum class Boundary {
 struct Box {
   int dimension = 2;          ///< 2: plane (x, z); 3
   Vec3 lower = Vec3::Zero();  ///< lower corner, sigma
-  Vec3 upper =
-      Vec3(1, 1, 1);  ///< upper corner, sigma; in 2D upper.y() - lower.y() is the gap of the glass plates
+  /// Upper corner, sigma; in 2D upper.y() - lower.y() is the gap of the glass plates.
+  Vec3 upper = Vec3(1, 1, 1);
   std::array<Boundary, 3> boundary = {Boundary::wall, Boundary::open, Boundary::wall};
   /// Outward tilt of the left and the right wall about their feet, degrees. The feet move with the plate.
   std::array<double, 2> side_tilt = {0, 0};
 
   [[nodiscard]] Vec3 size() const { return upper - lower; }
+  /// Whether the two ends of an axis coincide.
   [[nodiscard]] bool periodic(Axis axis) const {
     return boundary[static_cast<std::size_t>(axis)] == Boundary::periodic;
   }

@@ -57,7 +57,8 @@ struct Calibration {
 
   /// The measurement of quantity `name`; nullptr if it was not measured.
   [[nodiscard]] const Measurement* find(const std::string& name) const;
-  /// Inserts a measurement, or replaces an earlier one of the same name. \pre its name is one of quantities()
+  /// Inserts a measurement, or replaces an earlier one of the same name.
+  /// \pre its name is one of quantities()
   void put(Measurement fresh);
 };
 
@@ -66,7 +67,8 @@ struct Calibration {
 /// wrong type or unit, a negative error, a number of errors that differs from the number of values, or an
 /// invalid covariance matrix
 Calibration read_calibration(const std::filesystem::path& file);
-/// The calibration as the text of a file. \param head comment in the first line: what created the file
+/// The calibration as the text of a file.
+/// \param head comment in the first line: what created the file
 std::string calibration_text(const Calibration& calibration, const std::string& head);
 
 /// Result of include_calibration.

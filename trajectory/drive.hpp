@@ -70,7 +70,7 @@ struct Drive {
   /// tilted by theta. Gamma, K_m and the unit of time refer to |g|.
   double downward_share = 1;
 
-  /// Gamma = A omega^2 / g of the first harmonic or of the component at omega.
+  /// Gamma = A omega^2 / g, without unit, of the first harmonic or of the component at omega.
   [[nodiscard]] double gamma() const { return amplitude * omega * omega / gravity; }
   /// K_m = A^2 omega^2/(sigma g); the same number as W of Bhateja et al. 2016 and S of Eshuis et al. 2007.
   [[nodiscard]] double k_m() const { return amplitude * amplitude * omega * omega / gravity; }
@@ -89,8 +89,10 @@ struct Drive {
   /// Displacement and velocity of the plate in space, the horizontal motion included, sigma and sigma/t0.
   [[nodiscard]] Vec3 displacement_in_space(double fraction, std::int64_t cycle = 0) const;
   [[nodiscard]] Vec3 velocity_in_space(double fraction, std::int64_t cycle = 0) const;
-  /// Displacement and velocity along x of the horizontal motion; 0 without one.
+  /// Displacement along x of the horizontal motion, sigma; 0 without one.
+  /// \param fraction of a period, 0 <= fraction < 1
   [[nodiscard]] double horizontal_displacement(double fraction) const;
+  /// The same for the velocity, sigma/t0.
   [[nodiscard]] double horizontal_velocity(double fraction) const;
   /// The drive as it is `cycles` cycles after its start, without the ramp: its amplitude, omega and the
   /// numbers that follow from them.
@@ -143,8 +145,8 @@ bool is_whole(const DriveSpec& spec);
 
 /// The harmonics as the value of the key `harmonics`: "[[0.1, 0.25], [0.02, 0]]", to the last bit.
 std::string harmonics_text(const std::vector<Harmonic>& harmonics);
-/// Reads `harmonics` of the `[drive]` table of a scene or a cell. \throws ConfigError for more than
-/// kMaxHarmonics, and for an amplitude or a phase out of range
+/// Reads `harmonics` of the `[drive]` table of a scene or a cell.
+/// \throws ConfigError for more than kMaxHarmonics, and for an amplitude or a phase out of range
 std::vector<Harmonic> read_harmonics(const ConfigSection& drive);
 
 /// Reads the six keys of a DriveSpec from the `[drive]` table of a scene or a cell.

@@ -30,7 +30,8 @@ struct DriveRamp {
     double amplitude, rate, curvature;
     double omega, omega_rate;
   };
-  /// The state `at` cycles after the start of the drive. \param at may be any number
+  /// The state `at` cycles after the start of the drive.
+  /// \param at may be any number
   [[nodiscard]] State state(double at) const;
   [[nodiscard]] DriveLevel level(double at) const;
   /// Time from the start of the drive until `at` cycles are over, t0, and its inverse.
@@ -39,7 +40,7 @@ struct DriveRamp {
   [[nodiscard]] bool changes_frequency() const { return from.omega != to.omega; }
   /// The level after the ramp.
   [[nodiscard]] DriveLevel end() const { return returns ? from : to; }
-  /// Largest value of A omega^exponent on the way, the ends included.
+  /// Largest value of A omega^exponent, sigma/t0^exponent, on the way, the ends included.
   [[nodiscard]] double largest(int exponent) const;
   /// Upper bound of |dA/dt|, sigma/t0.
   [[nodiscard]] double rate_bound() const;

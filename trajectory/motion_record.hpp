@@ -26,19 +26,21 @@ struct MotionRecord {
 /// Reads a record. One column is the time (`time_s`, `time_ms` or `time_t0`), another the motion along the
 /// axis of the drive (`position_mm`, `position_m`, `position_sigma`, `velocity_mm_s`, `velocity_m_s`,
 /// `velocity_v0`, `acceleration_m_s2` or `acceleration_g`, in units of sigma/t0^2); other columns are
-/// ignored. \param scale converts laboratory units \throws InputError naming file, column and row: as
-/// read_table; a column that is missing or stands twice; fewer than 8 or more than kMaxSamples rows; a file
-/// above 256 MB; a row without a number; times that do not ascend, of which rows are missing, or that depart
-/// from equal steps by more than a tenth of a step. ConfigError at `where` if `scale` lacks a number that a
-/// unit requires
+/// ignored.
+/// \param scale converts laboratory units
+/// \throws InputError naming file, column and row: as read_table; a column that is missing or stands twice;
+/// fewer than 8 or more than kMaxSamples rows; a file above 256 MB; a row without a number; times that do not
+/// ascend, of which rows are missing, or that depart from equal steps by more than a tenth of a step.
+/// ConfigError at `where` if `scale` lacks a number that a unit requires
 MotionRecord read_motion_record(const std::filesystem::path& path, const Scale& scale, const Where& where);
 
 /// The record without its noise at high frequencies: y minimises sum (x - y)^2 + lambda sum (second
 /// differences of y)^2 (Whittaker 1923), and the same filter of what it left out, x - y, is added. A sine of
 /// frequency f keeps its phase and the share 1 - (r/(1 + r))^2 of its amplitude, r = (sin(pi f h)/sin(pi f_c
-/// h))^4, h the interval; straight lines are kept. \param cutoff frequency f_c, of which 3/4 of the amplitude
-/// remain, 1/t0; above 0 and below half the sampling rate \param repeats whether the first value follows the
-/// last
+/// h))^4, h the interval; straight lines are kept.
+/// \param cutoff frequency f_c, of which 3/4 of the amplitude remain, 1/t0; above 0 and below half the
+/// sampling rate
+/// \param repeats whether the first value follows the last
 MotionRecord smoothed(MotionRecord record, double cutoff, bool repeats);
 
 /// The motion of a record, and the amplitude of its component at the frequency of the drive.

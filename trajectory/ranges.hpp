@@ -15,25 +15,28 @@ namespace twincell {
 /// Largest distance of beads and cell bounds from 0 along each axis, sigma.
 inline constexpr double kFarthestPosition = 1e7;
 
-/// Checks cell, beads, drive and scale. \param name of the trajectory, for the message
+/// Checks cell, beads, drive and scale.
+/// \param name of the trajectory, for the message
 /// \throws InputError naming the number and its range
 void require_ranges(const TrajectoryInfo& info, const std::string& name);
 
-/// Checks positions, identities, uncertainties, temperatures, phase and cycle of a frame. \throws InputError
-/// likewise
+/// Checks positions, identities, uncertainties, temperatures, phase and cycle of a frame.
+/// \throws InputError likewise
 void require_ranges(const Frame& frame, std::size_t index, const TrajectoryInfo& info,
                     const std::string& name);
 
 /// Checks that a slot has a finite position exactly if it is filled. Files of other programs need not keep
-/// this. \throws InputError naming the frame and the slot
+/// this.
+/// \throws InputError naming the frame and the slot
 void require_filled_slots(const Frame& frame, std::size_t index, const std::string& name);
 
-/// Checks that three beads or more are not all at one place, as in a file whose positions were lost. \throws
-/// InputError naming the frame
+/// Checks that three beads or more are not all at one place, as in a file whose positions were lost.
+/// \throws InputError naming the frame
 void require_places(const Frame& frame, std::size_t index, const std::string& name);
 
 /// Checks that each frame that has a phase comes after the one before it that has.
-/// \param phases, cycles [frames] \throws InputError naming both frames
+/// \param phases, cycles [frames]
+/// \throws InputError naming both frames
 void require_order(std::span<const std::int32_t> phases, std::span<const std::int64_t> cycles,
                    const std::string& name);
 

@@ -38,9 +38,10 @@ class RecordedMotion {
   /// \pre at least 2 samples, finite; interval > 0
   RecordedMotion(std::vector<MotionSample> samples, RecordInfo info);
 
-  /// The motion in a cycle (0 is the first) at a fraction of it, 0 <= fraction < 1. \param period of a cycle,
-  /// t0. A repeated record gives the same bits in every repetition. Less than one interval beyond the ends of
-  /// another record its first or last polynomial continues; farther away the plate stays there.
+  /// The motion in a cycle (0 is the first) at a fraction of it, 0 <= fraction < 1.
+  /// \param period of a cycle, t0. A repeated record gives the same bits in every repetition. Less than one
+  /// interval beyond the ends of another record its first or last polynomial continues; farther away the
+  /// plate stays there.
   [[nodiscard]] MotionSample at(std::int64_t cycle, double fraction, double period) const;
   /// Adds a doubt to info().doubts.
   void doubt(std::string sentence) { info_.doubts.push_back(std::move(sentence)); }

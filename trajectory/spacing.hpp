@@ -18,6 +18,7 @@ double median_spacing(std::span<const Vec3> centres);
 
 /// Number of beads whose centre lies closer than `distance` > 0 to that of an earlier bead of the span, that
 /// is how many are listed once more. Beads that are not finite are left out.
+/// \param distance in the unit of the centres
 std::size_t listed_again(std::span<const Vec3> centres, double distance);
 
 }  // namespace twincell

@@ -61,11 +61,13 @@ struct TrajectoryInfo {
 
 /// Radius of a bead whose radius is not stored, sigma: the unit of length is the diameter of a bead.
 constexpr double kUsualRadius = 0.5;
-/// Radius of the bead of a slot, sigma. \param radius TrajectoryInfo::radius; empty: all kUsualRadius
+/// Radius of the bead of a slot, sigma.
+/// \param radius TrajectoryInfo::radius; empty: all kUsualRadius
 inline double radius_of(const std::vector<double>& radius, std::size_t slot) {
   return radius.empty() ? kUsualRadius : radius[slot];
 }
-/// Mass of the bead of a slot, m. \param mass TrajectoryInfo::mass; empty: all 1
+/// Mass of the bead of a slot, m.
+/// \param mass TrajectoryInfo::mass; empty: all 1
 inline double mass_of(const std::vector<double>& mass, std::size_t slot) {
   return mass.empty() ? 1 : mass[slot];
 }
@@ -140,9 +142,12 @@ struct Frame {
 class TrajectorySource {
  public:
   virtual ~TrajectorySource() = default;
+  /// What does not change from frame to frame: cell, drive, units, beads, origin.
   [[nodiscard]] virtual const TrajectoryInfo& info() const = 0;
+  /// Number of frames, which read() accepts as indices from 0.
   [[nodiscard]] virtual std::size_t n_frames() const = 0;
-  /// Reads frame `index` into `frame`, whose vectors are reused. \throws InputError if it cannot be read.
+  /// Reads frame `index` into `frame`, whose vectors are reused.
+  /// \throws InputError if it cannot be read.
   virtual void read(std::size_t index, Frame& frame) const = 0;
   /// Name for messages: the file, or "memory".
   [[nodiscard]] virtual std::string name() const = 0;

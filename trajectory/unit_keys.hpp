@@ -50,8 +50,8 @@ void displace_spellings(Config& config, const std::string& assignment);
 /// Two of amplitude, frequency and strength (gamma, k_m or peak velocity) determine a drive. Where
 /// assignments to `drive` would make three, removes from `config` those that they do not set, in every
 /// spelling; of one assignment and two stated quantities the frequency stays. An assigned frequency does not
-/// tell which of the two others stays, and removes none. \pre displace_spellings was called for each
-/// assignment
+/// tell which of the two others stays, and removes none.
+/// \pre displace_spellings was called for each assignment
 void displace_third_quantity(Config& config, const std::vector<std::string>& assignments);
 
 /// The configuration as TOML that has the same meaning when it is read again. If [scale] sets sigma, the

@@ -43,7 +43,8 @@ class PeriodCounter {
   /// m of a bead in the next frame, whole numbers. A coordinate that is not finite leaves its count as it
   /// was.
   const Vec3& next(std::size_t bead, const Vec3& position);
-  /// As next(). \returns the position r + m L
+  /// As next().
+  /// \returns the position r + m L
   Vec3 unwrapped(std::size_t bead, const Vec3& position);
   /// r + m L, where m is not 0; other coordinates stay as they are to the bit.
   static Vec3 moved(Vec3 r, const Vec3& m, const Vec3& period);

@@ -26,8 +26,8 @@ struct DraftKey {
   std::string key;      ///< "camera.pixels_per_sigma"
   std::string value;    ///< TOML
   std::string comment;  ///< error and method; for a placeholder how to find the value
-  std::vector<calibration::Estimate>
-      measured;       ///< one per number of a measured value; empty: stated or a placeholder
+  /// One per number of a measured value; empty: stated or a placeholder.
+  std::vector<calibration::Estimate> measured;
   bool open = false;  ///< a placeholder
 };
 
@@ -38,6 +38,7 @@ struct CellDraft {
   std::optional<calibration::Estimate> gamma;  ///< A omega^2/g, if drive and scale are known
   std::optional<double> pixels_per_sigma;
 
+  /// The key called `key`, with its table; null if the draft has none.
   [[nodiscard]] const DraftKey* find(const std::string& key) const;
 };
 
@@ -53,12 +54,14 @@ struct CellDraft {
 /// Standard errors are propagated to first order.
 CellDraft draft_cell(const CellSurvey& survey, const CellAnswers& answers);
 
-/// The draft as the text of a CELL.toml. \param head first line of the comment: what wrote it
+/// The draft as the text of a CELL.toml.
+/// \param head first line of the comment: what wrote it
 std::string cell_text(const CellDraft& draft, const CellSurvey& survey, const std::string& head);
 
-/// Value and error in decimals: the error has two significant digits. {12.34567, 0.0021} is "12.3457",
-/// "0.0021".
+/// The value in as many decimals as its error has with two significant digits: {12.34567, 0.0021} is
+/// "12.3457".
 std::string value_text(const calibration::Estimate& e);
+/// The error with two significant digits: "0.0021"; "unknown" if it is not finite.
 std::string error_text(double error);
 
 }  // namespace twincell::twin

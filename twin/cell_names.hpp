@@ -17,7 +17,8 @@ inline Product cells_folder() {
 
 /// A short name for each stack: the name of its folder or file without extension; for equal names, and for
 /// "report", with the extension and the dataset, then with the folders above ("day_1-gamma_2"). A name does
-/// not depend on the order of the stacks. \throws ConfigError if two of the stacks are the same
+/// not depend on the order of the stacks.
+/// \throws ConfigError if two of the stacks are the same
 std::vector<std::string> names_of_stacks(const std::vector<std::filesystem::path>& stacks);
 
 /// Stacks with their cell files, as the arguments of `match` name them.

@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "core/median.hpp"
 #include "imaging/settings/configure_locator.hpp"
+#include "imaging/settings/settings_doubts.hpp"
 #include "imaging/stack/chosen_frames.hpp"
 #include "imaging/stack/open_frames.hpp"
 
@@ -67,6 +68,8 @@ std::optional<imaging::LocatorOptions> survey_beads(CellSurvey& s, const SurveyO
       const imaging::LocatorConfiguration c = imaging::configure_locator(ahead, given, options.threads);
       found = c.locator;
       s.frame = static_cast<std::size_t>(c.frame);
+      for (const std::string& doubt : imaging::settings_doubts(c.choice, found.refine.method))
+        s.notes.push_back(doubt + ".");
       s.picture = ahead.look(s.frame)->clone();
       s.discs = imaging::locate(s.picture, found).beads;
     } catch (const InputError&) {
@@ -95,7 +98,8 @@ std::optional<imaging::LocatorOptions> survey_beads(CellSurvey& s, const SurveyO
     s.beads = calibration::count_beads(beads);
     s.aspect = beads.aspect;
   } catch (const InputError& e) {
-    s.missing.push_back({"the bead diameter", fmt::format("too few beads are seen ({})", e.what()), remedy});
+    s.missing.push_back({"the bead diameter",
+                         fmt::format("too few beads are seen ({})", without_full_stop(e.what())), remedy});
     return std::nullopt;
   }
   return found;
@@ -147,10 +151,8 @@ void survey_plate(CellSurvey& s, const SurveyOptions& options, const std::vector
                                                .model_error = calibration::kHeightModelError_px,
                                                .repeats = repeats});
   } catch (const InputError& e) {
-    std::string why = e.what();
-    while (why.ends_with('.')) why.pop_back();
-    s.missing.push_back(
-        {"the plate's motion", why, "give at least one whole cycle of frames, or state the drive by hand"});
+    s.missing.push_back({"the plate's motion", without_full_stop(e.what()),
+                         "give at least one whole cycle of frames, or state the drive by hand"});
     // Without a cycle, the row is the mean height only if the plate does not move.
     const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
     if (heights.size() < 2 || !(*high - *low < 1)) s.plate_row.reset();
@@ -275,7 +277,8 @@ void survey_bed(CellSurvey& s, const imaging::LocatorOptions& locator, const Sur
     s.plate_of_bed = true;
     found("plate");
   } catch (const InputError& e) {
-    s.notes.push_back(fmt::format("the plate is not found from the bed either ({})", e.what()));
+    s.notes.push_back(
+        fmt::format("the plate is not found from the bed either ({})", without_full_stop(e.what())));
   }
 }
 

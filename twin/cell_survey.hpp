@@ -12,10 +12,10 @@
 #include "calibration/camera/cell_geometry.hpp"
 #include "calibration/camera/size_statistics.hpp"
 #include "calibration/drive/drive_fit.hpp"
+#include "core/progress.hpp"
 #include "imaging/disc/detection.hpp"
 #include "imaging/refine/refiner.hpp"
 #include "imaging/stack/frame_source.hpp"
-#include "twin/comparison.hpp"
 
 namespace twincell::twin {
 
@@ -67,8 +67,8 @@ struct CellSurvey {
 
 /// Measures what the stack shows. Frames after an unreadable one, or after one of another size, are left out.
 /// The plate counts as seen only if at least 90 % of the frames show it and no bead is below it by a third of
-/// a diameter. Where no plate or no side wall is seen, they are taken from the beads that touch them. \throws
-/// InputError if the stack cannot be opened or its first frame cannot be read
+/// a diameter. Where no plate or no side wall is seen, they are taken from the beads that touch them.
+/// \throws InputError if the stack cannot be opened or its first frame cannot be read
 CellSurvey survey_cell(const std::filesystem::path& stack, const SurveyOptions& options,
                        const ProgressOf& progress);
 

@@ -52,8 +52,8 @@ Sides read_sides(const ComparingOptions& options) {
   return sides;
 }
 
-/// A note on films of one cell that show nearly, but not exactly, as many beads: some were missed, or are
-/// none.
+/// A note on films of one cell that show nearly, but not exactly, the same number of beads: some beads were
+/// missed, or other objects were taken for beads.
 void note_unequal_beds(const Sides& sides, const std::vector<analysis::RunEnds>& ends,
                        std::vector<std::string>& notes) {
   constexpr double kSameWidth = 0.02, kSameBed = 0.15;  // relative

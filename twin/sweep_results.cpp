@@ -161,7 +161,7 @@ std::string other_axes(const JsonView& row, bool of_point) {
   return text;
 }
 
-/// \return the keys of the searches whose onsets have no place in the diagram, with the number of these
+/// \returns the keys of the searches whose onsets have no place in the diagram, with the number of these
 std::map<std::string, int> add_onsets(const JsonView& document, analysis::Comparison& comparison) {
   std::map<std::string, int> elsewhere;
   const auto onsets = document.find("onsets");

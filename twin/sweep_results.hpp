@@ -13,12 +13,14 @@ namespace twincell::twin {
 /// Reads a file "twincell sweep 1" (JSON) and adds to `comparison` its points with a known phase, and its
 /// onsets of bouncing and convecting, at the N_l, Gamma and start that the file states for each
 /// ("conditions"). An onset in another measure of the drive (amplitude, peak velocity, K_m) is converted by
-/// the Gamma of its points. \returns sentences for the user: onsets without a place in the diagram
+/// the Gamma of its points.
+/// \returns sentences for the user: onsets without a place in the diagram
 /// \throws InputError if the file has another format, is damaged, or was collected by a
 /// version that did not store the conditions, or if none of its points has a place in the diagram
 std::vector<std::string> add_sweep(const std::filesystem::path& file, analysis::Comparison& comparison);
 
-/// All of them. \throws as add_sweep, and ConfigError if two hold the same points
+/// All of them.
+/// \throws as add_sweep, and ConfigError if two hold the same points
 std::vector<std::string> add_sweeps(const std::vector<std::filesystem::path>& files,
                                     analysis::Comparison& comparison);
 

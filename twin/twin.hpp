@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +15,6 @@
 #include "imaging/cell/cell.hpp"
 #include "imaging/phase/phase_lock.hpp"
 #include "sim/scene/scene.hpp"
-#include "twin/comparison.hpp"
 
 namespace twincell::twin {
 
@@ -68,8 +66,9 @@ struct Twin {
 
 /// Scene of the twin as TOML: `base` (text of a scene, or empty) with width, sides, drive and scale of the
 /// cell. It starts from frame `frame` of `experiment` and lasts `cycles` cycles with the cell's number of
-/// phases. \throws ConfigError for open sides, or a scale that differs from that of the cell \pre the cell
-/// states width and drive
+/// phases.
+/// \throws ConfigError for open sides, or a scale that differs from that of the cell
+/// \pre the cell states width and drive
 std::string twin_scene(const std::string& base, const std::string& base_name,
                        const imaging::CellDescription& cell, const std::filesystem::path& experiment,
                        std::size_t frame, std::int64_t cycles);

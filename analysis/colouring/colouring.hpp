@@ -31,7 +31,8 @@ struct Colouring {
 
 /// All colourings.
 const std::vector<Colouring>& colourings();
-/// The colouring with this word, for this trajectory. \param option for messages
+/// The colouring with this word, for this trajectory.
+/// \param option for messages
 /// \throws ConfigError if no colouring has the word, or if the trajectory lacks the data
 const Colouring& colouring_named(const std::string& word, const TrajectorySource& source,
                                  const std::string& option);

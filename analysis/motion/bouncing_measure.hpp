@@ -27,6 +27,7 @@ struct HeightSums {
   std::vector<std::size_t> count;
 
   explicit HeightSums(std::size_t size = 0) : sum(size, 0.0), count(size, 0) {}
+  /// Adds the sums of further frames.
   void add(const HeightSums& other);
 };
 
@@ -36,7 +37,8 @@ class Bouncing {
  public:
   explicit Bouncing(const AnalysisContext& context);
 
-  /// Adds a frame. \param heights [tracers] in this frame, NaN where a tracer is missing
+  /// Adds a frame.
+  /// \param heights [tracers] in this frame, NaN where a tracer is missing
   void add(const Frame& frame, const std::vector<double>& heights);
   /// Ends the current cycle. It counts if enough tracers were seen at each of its phases.
   void close_cycle();

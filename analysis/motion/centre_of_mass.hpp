@@ -22,7 +22,8 @@ inline constexpr double kAtRest = 0.005;
 std::string why_not_at_rest(const TrajectoryInfo& info, const Frame& frame);
 
 /// Height of the centre of mass above the plate, sigma, if the bed rests in this frame and velocities show
-/// it. \param why_not set to the reason if the result is absent
+/// it.
+/// \param why_not set to the reason if the result is absent
 std::optional<double> resting_height(const TrajectoryInfo& info, const Frame& frame, std::string& why_not);
 
 /// Height of the centre of mass above the mean height of the plate. Results:

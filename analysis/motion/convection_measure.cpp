@@ -139,7 +139,7 @@ void TracerSpread::add_drift(double noise, std::vector<Result>& all) const {
       all.push_back(absent_result(name, reason, kLineSource));
     return;
   }
-  const double last = spread.values.back();  // copied likewise
+  const double last = spread.values.back();  // copied for the same reason
   const DriftVerdict verdict = judge_drift(line_, std::isfinite(noise) ? noise : 0);
   all.push_back(growth_result("s_j_growth", growth(line_, 0, line_.n()), 0));
   if (verdict.drift == Drift::undetermined) {

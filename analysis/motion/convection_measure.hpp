@@ -18,7 +18,8 @@ class TracerSpread {
   explicit TracerSpread(const AnalysisContext& context)
       : context_(context), line_{.n_tracers = context.tracers.size()} {}
 
-  /// Adds the beginning of a cycle. \param heights [tracers] in this frame, NaN where a tracer is missing
+  /// Adds the beginning of a cycle.
+  /// \param heights [tracers] in this frame, NaN where a tracer is missing
   void add(const Frame& frame, const std::vector<double>& heights);
   /// Appends s_j, s_c and cycle_of_convection.
   /// \param no_cycles why the frames have no cycles of tracers; empty if they have

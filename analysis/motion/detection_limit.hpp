@@ -14,11 +14,13 @@ class DetectionLimit {
  public:
   explicit DetectionLimit(const AnalysisContext& context) : context_(context) {}
 
-  /// Adds a frame. \param heights [tracers] in this frame, NaN where a tracer is missing
+  /// Adds a frame.
+  /// \param heights [tracers] in this frame, NaN where a tracer is missing
   void add(const Frame& frame, const std::vector<double>& heights);
   /// Standard uncertainty of one height, rms over tracers and frames, sigma; NaN if unknown.
   [[nodiscard]] double noise() const;
-  /// Appends half_pixel, s_b_noise and s_j_noise. \param cycles number of cycles that s_b is averaged over
+  /// Appends half_pixel, s_b_noise and s_j_noise.
+  /// \param cycles number of cycles that s_b is averaged over
   void add_results(std::size_t cycles, std::vector<Result>& all) const;
 
  private:

@@ -34,7 +34,8 @@ class LaggedVectors {
     }
     if (past_.size() > longest_) past_.pop_front();
   }
-  /// Time of the last frame. \pre a frame was added
+  /// Time of the last frame.
+  /// \pre a frame was added
   [[nodiscard]] double last() const { return past_.back().first; }
   [[nodiscard]] bool empty() const { return past_.empty(); }
 

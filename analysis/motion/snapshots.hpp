@@ -20,13 +20,14 @@ struct Snapshot {
   double plate = 0;  ///< height of the plate, sigma; the floor of the box if unknown
 };
 
-/// Frame `index` with its bond order. \param cutoff neighbour cutoff, sigma
+/// Frame `index` with its bond order.
+/// \param cutoff neighbour cutoff, sigma
 Snapshot snapshot(const TrajectorySource& trajectory, std::size_t index, double cutoff);
 
 /// At most `most` frame indices, in order, that show both the slow and the fast motion. Half of them are at
 /// phase 0, evenly spread over the cycles from the first to the last; the others are from the last whole
-/// cycle, evenly spread over its phases. Without phases, they are evenly spread over all frames. \pre most >=
-/// 2
+/// cycle, evenly spread over its phases. Without phases, they are evenly spread over all frames.
+/// \pre most >= 2
 std::vector<std::size_t> representative_frames(const TrajectorySource& trajectory, std::size_t most);
 
 }  // namespace twincell::analysis

@@ -22,7 +22,9 @@ struct BedWindow {
   [[nodiscard]] double depth(const Vec3& r) const;
 };
 
-/// The window of these centres. \pre at least one centre; all are finite
+/// The window of these centres.
+/// \param margin by which it extends beyond the percentiles, sigma
+/// \pre at least one centre; all are finite
 BedWindow bed_window(const std::vector<Vec3>& centres, const Box& box, double margin);
 
 /// Centres of the beads that are present in a frame and have finite coordinates.

@@ -56,6 +56,7 @@ enum class Structure {
   square,     ///< 4 bonds and |q6 - 0.586| < 0.03
   other,
 };
+/// Structure of the neighbourhood of a bead.
 Structure structure_of(const BondOrder& order, std::size_t bead);
 
 }  // namespace twincell::analysis

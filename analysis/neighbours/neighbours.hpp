@@ -29,7 +29,8 @@ struct Neighbours {
 /// does not depend on the order of beads). Periodic boundaries use the nearest image. Empty slots have no
 /// neighbours. The cells are sorted instead of being stored as a grid, so that a bead at z = 1e4 costs
 /// nothing extra. Cost O(N log N). If a period is shorter than 2 cutoff, only the nearest image of each pair
-/// is found. \pre cutoff > 0
+/// is found.
+/// \pre cutoff > 0
 Neighbours find_neighbours(const Frame& frame, const Box& box, double cutoff);
 
 }  // namespace twincell::analysis

@@ -37,8 +37,8 @@ struct VoronoiCells {
 /// A cell depends only on beads within 2 radius. The beads near a bond clip its bisector to the shared edge.
 /// No triangulation is stored, so that rounding cannot corrupt one, co-circular beads are not a special case,
 /// and the result does not depend on the order of beads. Bead sizes are not used. The y coordinate is used
-/// only to find the beads within 2 radius. Cost O(N log N). \pre radius > 0; a periodic box is wider than 4
-/// radius
+/// only to find the beads within 2 radius. Cost O(N log N).
+/// \pre radius > 0; a periodic box is wider than 4 radius
 VoronoiCells voronoi_cells(const Frame& frame, const Box& box, double radius = kCellRadius);
 
 }  // namespace twincell::analysis

@@ -65,7 +65,8 @@ inline constexpr std::array kSbForms = {
     Choice<SbForm>{SbForm::variance, "variance", "standard deviation over the phases"},
     Choice<SbForm>{SbForm::about_rest, "about_rest", "rms about the height at rest"},
     Choice<SbForm>{SbForm::as_printed, "as_printed", "rms of the height"}};
-/// The form with this name. \throws ConfigError for an unknown name
+/// The form with this name.
+/// \throws ConfigError for an unknown name
 SbForm s_b_named(const std::string& name);
 
 /// Definition of the neighbours that enter a bead's bond order.
@@ -80,7 +81,8 @@ inline constexpr std::array kNeighbourRules = {
     Choice<NeighbourRule>{NeighbourRule::delaunay, "delaunay", "beads whose Voronoi cells share an edge"},
     Choice<NeighbourRule>{NeighbourRule::voronoi, "voronoi",
                           "the same, each bond weighted by the length of that edge"}};
-/// The rule with this name. \throws ConfigError for an unknown name
+/// The rule with this name.
+/// \throws ConfigError for an unknown name
 NeighbourRule neighbour_rule_named(const std::string& name);
 
 /// Options of one analysis.
@@ -140,7 +142,8 @@ class FrameView {
   [[nodiscard]] const Neighbours& neighbours() const;
   /// Bond order from those neighbours.
   [[nodiscard]] const BondOrder& order() const;
-  /// The Voronoi cells, independent of the rule. \pre the trajectory is planar
+  /// The Voronoi cells, independent of the rule.
+  /// \pre the trajectory is planar
   [[nodiscard]] const VoronoiCells& cells() const;
 
  private:
@@ -155,7 +158,10 @@ class FrameView {
 class Observable {
  public:
   virtual ~Observable() = default;
+  /// Adds a frame. Frames come once each, in the order of the trajectory.
   virtual void add(const FrameView& view) = 0;
+  /// The results of the frames added so far, present or absent, one for each name of its ObservableEntry that
+  /// applies to the trajectory.
   [[nodiscard]] virtual std::vector<Result> results() const = 0;
 };
 
@@ -188,8 +194,8 @@ struct NamedResult {
   std::string_view name;
   Pooling pooling = Pooling::mean;
   Range range = Range::any;
-  bool may_repeat =
-      false;          ///< two different runs may well give the same value: a count, or a camera constant
+  /// Two different runs may well give the same value: a count, or a camera constant.
+  bool may_repeat = false;
   bool main = false;  ///< one of the main results, which `analyze` and `measure` print without -v
   /// The result with the abscissas of a sparse profile, by which the elements of several runs are matched;
   /// empty for other results.
@@ -227,7 +233,8 @@ std::vector<Result> analyze(const TrajectorySource& trajectory, const AnalysisOp
 /// Names of all results that `analyze` can return, in order.
 std::vector<std::string> result_names();
 
-/// The result called `name`. \pre it exists
+/// The result called `name`.
+/// \throws std::logic_error if there is none
 const Result& find_result(const std::vector<Result>& results, const std::string& name);
 /// The result called `name`, or null.
 const Result* seek_result(const std::vector<Result>& results, const std::string& name);

@@ -14,7 +14,8 @@ namespace twincell::analysis {
 /// Probability density of x / <x>, <x> the mean over a frame; mean of the densities of the frames.
 class RatioDensity {
  public:
-  /// \param range largest ratio \param width of a bin; a divisor of the range
+  /// \param range largest ratio
+  /// \param width of a bin; a divisor of the range
   RatioDensity(double range, double width);
 
   /// Adds the values of a frame. Ratios below 0 or beyond the range count in the normalisation alone.
@@ -22,7 +23,9 @@ class RatioDensity {
   void add(std::span<const double> values, double mean);
 
   /// NAME_density with _low and _high (array_with_interval.hpp), and NAME_ratio, the centres of the bins.
-  /// \param what the ratio in words \param which the values that count \param none why there is none
+  /// \param what the ratio in words
+  /// \param which the values that count
+  /// \param none why there is none
   [[nodiscard]] std::vector<Result> results(const std::string& name, const std::string& what,
                                             const std::string& which, const std::string& source,
                                             const std::string& none) const;

@@ -29,13 +29,14 @@ std::string results_text(const std::vector<Result>& results);
 std::string results_json(const std::vector<Result>& results);
 
 /// Inverse of results_json, in alphabetical order of the names. "value" or "absent" is required, with an
-/// array also "shape". \throws InputError as JsonView, also for a shape that does not fit the number of
-/// values
+/// array also "shape".
+/// \throws InputError as JsonView, also for a shape that does not fit the number of values
 std::vector<Result> results_from_json(const JsonView& results);
 
 /// Writes an HDF5 file with one group per result below /results, and the text /provenance. A group has the
 /// dataset `value` and the members of results_json as attributes, or the attribute `absent`. The file appears
-/// only when it is complete. \throws ConfigError, RunError
+/// only when it is complete.
+/// \throws ConfigError, RunError
 void write_results(const std::filesystem::path& path, const std::vector<Result>& results,
                    const std::string& provenance_json);
 

@@ -7,7 +7,7 @@
 
 namespace twincell::analysis {
 
-/// Bond order with the neighbour rule of the analysis; definitions in bond_order.hpp. Results:
+/// Bond order with the neighbour rule of the analysis; definitions in bond_orientation.hpp. Results:
 ///
 /// - q6, psi6, psi4: scalars, mean over beads and frames
 /// - hexagonal_fraction: scalar, share of the beads with Structure::hexagonal, mean over frames

@@ -11,7 +11,7 @@ namespace twincell::analysis {
 /// sides makes their numbers comparable.
 inline constexpr double kContactReach = 1.05;
 
-/// Geometric coordination number: mean number of beads that touch a bead,
+/// Contact number, also called geometric coordination number: mean number of beads that touch a bead,
 ///
 ///     Z = 2 pairs/beads,   pairs: |r_i - r_j| <= 1.05 (R_i + R_j)
 ///

@@ -20,7 +20,7 @@ struct Defects {
   std::size_t holes = 0;         ///< closed loops of surface beads inside the packing
 };
 
-/// Finds the defects from the coordination by Voronoi neighbours. The number of dislocations is the maximum
+/// Finds the defects from the numbers of Voronoi neighbours. The number of dislocations is the maximum
 /// number of simultaneous pairs (maximum matching), so that it does not depend on the order of the search. A
 /// disclination without a partner is free. A hole is a face of the neighbour graph that no circle of the
 /// cell's radius covers. A missing bead of a perfect crystal leaves a hole; its six neighbours are then

@@ -99,7 +99,7 @@ class GrainsObservable : public Observable {
   [[nodiscard]] std::vector<Result> results() const override {
     const std::string why = dimension_ != 2 ? "the cell is not planar" : "no frame holds a bead";
     const std::string definition = fmt::format(
-        "grain: at least {} beads joined by Voronoi neighbours with psi6 >= {} that are turned by at most {} "
+        "grain: at least {} beads joined by Voronoi neighbours with psi6 > {} that are turned by at most {} "
         "degrees, and the beads between grains, which join the grain with which they share the "
         "greatest edge length; {}",
         kGrainBeads, kOrdered, kGrainTurn, rule_);
@@ -138,9 +138,9 @@ class GrainsObservable : public Observable {
 
 }  // namespace
 
-Grains find_grains(const BondOrder& order, const VoronoiCells& cells, bool fill) {
+Grains find_grains(const BondOrder& order, const VoronoiCells& cells) {
   const std::size_t n = order.psi6.size();
-  const auto ordered = [&](std::size_t i) { return order.psi6[i] >= kOrdered; };  // false for NaN
+  const auto ordered = [&](std::size_t i) { return order.psi6[i] > kOrdered; };  // false for NaN
   // Groups of ordered neighbours with similar lattice directions.
   Groups groups(n);
   for (std::size_t i = 0; i < n; ++i)
@@ -173,7 +173,7 @@ Grains find_grains(const BondOrder& order, const VoronoiCells& cells, bool fill)
     if (g != Grains::kNone) sum[g] += std::polar(order.psi6[i], 6 * order.angle[i] * std::numbers::pi / 180);
   }
   for (const auto& s : sum) grains.angle.push_back(lattice_angle(s.real(), s.imag()));
-  while (fill && grow(grains, cells)) {
+  while (grow(grains, cells)) {
   }
   return grains;
 }

@@ -22,11 +22,11 @@ struct Grains {
 };
 
 /// Finds the grains. Neighbours (beads whose Voronoi cells share an edge) belong to one grain if both have
-/// psi6 >= kOrdered and their lattice directions differ by at most kGrainTurn. Groups of fewer than
-/// kGrainBeads beads are not grains. With `fill`, the remaining beads then join, layer by layer, the grain
+/// psi6 > kOrdered and their lattice directions differ by at most kGrainTurn. Groups of fewer than
+/// kGrainBeads beads are not grains. The remaining beads then join, layer by layer, the grain
 /// with which they share the greatest total edge length. Grains then touch, and a boundary is a line without
 /// a disordered layer between the grains.
-Grains find_grains(const BondOrder& order, const VoronoiCells& cells, bool fill = true);
+Grains find_grains(const BondOrder& order, const VoronoiCells& cells);
 
 /// Grains of the packing. Results:
 ///

@@ -10,14 +10,29 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{"g_r"},
-                                    {"g_r_low"},
-                                    {"g_r_high"},
-                                    {"g_r_distance"},
-                                    {.name = "g_peak", .range = Range::not_negative},
-                                    {"g_peak_distance"}};
+/// In definition 1 the bins were [0, w), [w, 2w), ..., so that beads in contact lay on the edge of two bins.
+constexpr int kDefinition = 2;
+constexpr NamedResult kResults[] = {
+    {.name = "g_r", .definition = kDefinition},
+    {.name = "g_r_low", .definition = kDefinition},
+    {.name = "g_r_high", .definition = kDefinition},
+    {.name = "g_r_distance", .definition = kDefinition},
+    {.name = "g_peak", .range = Range::not_negative, .definition = kDefinition},
+    {.name = "g_peak_distance", .definition = kDefinition}};
 constexpr auto kBins = static_cast<std::size_t>(kPairCorrelationRange / kPairCorrelationWidth + 0.5);
 const char* const kSource = "Ripley 1988, ch. 3";
+
+/// Centre and edges of bin b, sigma: the centres are multiples of the width, the first of them one width.
+constexpr double centre_of(std::size_t b) {
+  return (static_cast<double>(b) + 1) * kPairCorrelationWidth;
+}
+constexpr double inner_edge(std::size_t b) {
+  return (static_cast<double>(b) + 0.5) * kPairCorrelationWidth;
+}
+constexpr double outer_edge(std::size_t b) {
+  return (static_cast<double>(b) + 1.5) * kPairCorrelationWidth;
+}
+constexpr double kFarthest = outer_edge(kBins - 1);
 
 constexpr double kMargin = 0.5;  // sigma, of the window: a bead reaches half its diameter beyond its centre
 
@@ -37,18 +52,21 @@ class PairCorrelation : public Observable {
     if (window.beads == 0) return;
     const double density = static_cast<double>(window.beads) / window.content;
     // The farthest edge of a bin up to which each bead is a reference bead, and the pairs in those bins.
-    const Neighbours pairs = find_neighbours(frame, info_.box, kPairCorrelationRange);
+    const Neighbours pairs = find_neighbours(frame, info_.box, kFarthest);
     std::vector<std::size_t> references(kBins, 0), found(kBins, 0);
     for (std::size_t i = 0; i < frame.position.size(); ++i) {
       if (!frame.present(i) || !frame.position[i].allFinite()) continue;
       const double depth = std::min(window.depth(frame.position[i]), farthest_);
-      if (!(depth >= kPairCorrelationWidth)) continue;
-      const std::size_t bins = depth >= kPairCorrelationRange - kRounding
-                                   ? kBins
-                                   : static_cast<std::size_t>(depth / kPairCorrelationWidth + kRounding);
+      if (!(depth >= outer_edge(0) - kRounding)) continue;
+      const std::size_t bins =
+          depth >= kFarthest - kRounding
+              ? kBins
+              : static_cast<std::size_t>(depth / kPairCorrelationWidth - 0.5 + kRounding);
       for (std::size_t b = 0; b < bins; ++b) ++references[b];
       pairs.for_each(i, [&](std::size_t, const Vec3& bond) {
-        const auto b = static_cast<std::size_t>(bond.norm() / kPairCorrelationWidth);
+        const double r = bond.norm();
+        if (r < inner_edge(0)) return;
+        const auto b = static_cast<std::size_t>(r / kPairCorrelationWidth - 0.5);
         if (b < bins) ++found[b];
       });
     }
@@ -62,7 +80,7 @@ class PairCorrelation : public Observable {
     std::vector<double> values(kBins, kNaN), centres(kBins);
     std::size_t peak = kBins;
     for (std::size_t b = 0; b < kBins; ++b) {
-      centres[b] = (static_cast<double>(b) + 0.5) * kPairCorrelationWidth;
+      centres[b] = centre_of(b);
       if (g_[b].n() == 0) continue;
       values[b] = g_[b].mean();
       if (peak == kBins || values[b] > values[peak]) peak = b;
@@ -106,15 +124,14 @@ class PairCorrelation : public Observable {
  private:
   /// Area (3D: volume) of bin b.
   [[nodiscard]] double content_of(std::size_t b) const {
-    const double inner = static_cast<double>(b) * kPairCorrelationWidth,
-                 outer = inner + kPairCorrelationWidth;
+    const double inner = inner_edge(b), outer = outer_edge(b);
     return info_.box.dimension == 2 ? std::numbers::pi * (outer * outer - inner * inner)
                                     : 4 * std::numbers::pi / 3 * (std::pow(outer, 3) - std::pow(inner, 3));
   }
 
   static constexpr double kRounding = 1e-9;
   const TrajectoryInfo& info_;
-  double farthest_ = kPairCorrelationRange;  ///< half of the shortest period, sigma
+  double farthest_ = kFarthest;  ///< half of the shortest period, sigma
   std::vector<SeriesAverage> g_;
 };
 

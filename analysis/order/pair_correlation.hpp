@@ -6,7 +6,7 @@
 
 namespace twincell::analysis {
 
-inline constexpr double kPairCorrelationRange = 4;     ///< sigma, largest distance of g(r)
+inline constexpr double kPairCorrelationRange = 4;     ///< sigma, centre of the last bin of g(r)
 inline constexpr double kPairCorrelationWidth = 0.05;  ///< sigma, width of a bin
 
 /// Pair correlation function g(r): mean number of beads per area (3D: volume) at distance r from a bead,
@@ -14,6 +14,9 @@ inline constexpr double kPairCorrelationWidth = 0.05;  ///< sigma, width of a bi
 ///
 ///     g(r) = sum over frames and reference beads of n(r) / (rho V_bin),   V_bin = pi (r_2^2 - r_1^2), in 3D
 ///     4 pi/3 (r_2^3 - r_1^3)
+///
+/// The centres of the bins are 0.05, 0.1, ..., 4 sigma, so that beads of diameter 1 in contact are in the
+/// middle of a bin and not on the edge of two.
 ///
 /// The bed ends at walls, at the plate and at its surface. A reference bead of a bin is therefore one that is
 /// farther than the bin's outer radius from the edges of the bed's window (bed_window.hpp) with a margin of

@@ -11,7 +11,8 @@
 namespace twincell::analysis {
 
 /// The phases of some runs: the common one, or each in the order of the runs, "bouncing / convecting"; "no
-/// run" without runs. \param members indices of the runs
+/// run" without runs.
+/// \param members indices of the runs
 std::string phases_of(const std::vector<Run>& runs, const std::vector<std::size_t>& members);
 
 /// Where the sides agree and where they differ, the onsets, and how many numbers differ really; of a sweep

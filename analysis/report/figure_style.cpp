@@ -74,9 +74,6 @@ std::string one_axis(char name, const PlotAxis& a, bool powers) {
 
 }  // namespace
 
-const char* series_colour(std::size_t i) {
-  return kSeries[i % kSeries.size()].colour;
-}
 int series_point(std::size_t i) {
   return kSeries[i % kSeries.size()].point;
 }

@@ -14,22 +14,25 @@ namespace twincell::analysis::figure_style {
 /// Largest width, px. A page shows wider figures reduced, and their text with them.
 inline constexpr int kWidest = 720;
 
-/// Width of lines between points, of curves (laws, fits), and of marks (thresholds, borders).
-inline constexpr double kLine = 1.3, kCurve = 1.8, kMark = 1.5;
+/// Width of lines between points, and of curves (laws, fits).
+inline constexpr double kLine = 1.3, kCurve = 1.8;
 
-/// gnuplot point types; unfilled(p) is the same shape without its filling.
+/// gnuplot point types.
 inline constexpr int kCircle = 7, kSquare = 5, kTriangle = 9, kDiamond = 13, kDown = 11, kPentagon = 15;
+/// The point type of the same shape as `filled` (kCircle ...), without its filling.
 [[nodiscard]] constexpr int unfilled(int filled) {
   return filled - 1;
 }
 
-/// Colour and point type of series i (from 0): line type i + 1 of gnuplot, as head() defines it.
-[[nodiscard]] const char* series_colour(std::size_t i);
+/// Point type of series i (from 0), whose colour and point are those of line type i + 1 of gnuplot, as head()
+/// defines it.
 [[nodiscard]] int series_point(std::size_t i);
 /// Colour of series i of n in an order (drive strength, height): viridis, from dark blue to yellow.
 [[nodiscard]] std::string ordered_colour(std::size_t i, std::size_t n);
 
-/// `set terminal` of one kind of output. \param kind "svg", "pdf" or "png" \param width,height px at 100 %
+/// `set terminal` of one kind of output.
+/// \param kind "svg", "pdf" or "png"
+/// \param width,height px at 100 %
 [[nodiscard]] std::string terminal(const std::string& kind, int width, int height);
 /// Commands at the beginning of every figure: palette, line types, borders, grid, key below the plot.
 [[nodiscard]] std::string head();
@@ -68,13 +71,15 @@ inline constexpr const char* kStated = "lw 1.5 dt 4 lc rgb '#555555'";
 /// Panels of equal size with a common key below them, in `rows` times `columns`.
 class Panels {
  public:
-  /// \param width,height of the figure, px \param key_rows lines of the key
+  /// \param width,height of the figure, px
+  /// \param key_rows lines of the key
   Panels(std::size_t rows, std::size_t columns, int width, int height, int key_rows);
   /// Commands before the first panel.
   [[nodiscard]] static std::string begin();
   /// Commands before panel i, counted along the rows.
   [[nodiscard]] std::string panel(std::size_t i) const;
-  /// Commands after the last panel: the key below them. \param entries clauses of a plot command (`keyentry`)
+  /// Commands after the last panel: the key below them.
+  /// \param entries clauses of a plot command (`keyentry`)
   [[nodiscard]] std::string end(const std::vector<std::string>& entries) const;
 
  private:

@@ -28,12 +28,14 @@ std::string phase_key(const std::vector<Run>& runs);
 /// Range of an axis. Values that are not finite do not count.
 struct PlotRange {
   double low = INFINITY, high = -INFINITY;
+  /// Includes v, unless it is not finite.
   void add(double v) {
     if (!std::isfinite(v)) return;
     low = std::min(low, v);
     high = std::max(high, v);
   }
   [[nodiscard]] bool empty() const { return low > high; }
+  /// The range with a margin on both sides: `share` of its length, at least `least`.
   [[nodiscard]] PlotRange padded(double share, double least) const {
     if (empty()) return {0, 1};
     const double pad = std::max(least, share * (high - low));

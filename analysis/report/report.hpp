@@ -29,8 +29,8 @@ inline Product report_folder() {
 
 /// Writes `folder`, which appears only when it is complete: report.html (one file without external requests),
 /// figures/ (SVG, PDF, PNG, .gp, .dat), runs.csv, differences.csv, series_s_k.csv, series_s_j.csv,
-/// phases.txt, results.json, provenance.json. \throws ConfigError if the folder cannot be written; RunError
-/// if gnuplot is missing
+/// phases.txt, results.json, provenance.json.
+/// \throws ConfigError if the folder cannot be written; RunError if gnuplot is missing
 void write_report(const std::filesystem::path& folder, const Comparison& comparison,
                   const std::string& provenance_json, Progress& progress = Progress::none());
 

@@ -7,7 +7,6 @@
 #include <limits>
 #include <optional>
 
-#include "analysis/observable/results.hpp"
 #include "core/escape.hpp"
 
 namespace twincell::analysis {

@@ -18,7 +18,8 @@ struct BeadPanel {
   std::vector<double> radius;  ///< per slot, sigma; empty: 1/2
 };
 /// Snapshots in rows of `columns` panels, with the beads to scale and coloured by local structure (Fortini &
-/// Huang 2015, Fig. 1). \pre panels is not empty
+/// Huang 2015, Fig. 1).
+/// \pre panels is not empty
 Figure beads_figure(const std::vector<BeadPanel>& panels, const std::string& name, const std::string& title,
                     std::size_t columns);
 /// First and last frame of one run of each side (one side may be absent), with the beads to scale and

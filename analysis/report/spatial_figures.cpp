@@ -27,7 +27,7 @@ constexpr std::array<BeadStyle, 4> kLattice = {{{kSky, "A: rows along the floor"
                                                 {kOrange, "B: rows along the walls"},
                                                 {kPale, "ψ6 below 0.9"}}};
 std::size_t style_of(double psi6, double angle) {
-  if (!(psi6 > 0.9)) return 3;
+  if (!(psi6 > kOrdered)) return 3;
   if (misorientation(angle, 0) <= 10) return 0;
   return misorientation(angle, 30) <= 10 ? 2 : 1;
 }
@@ -70,22 +70,22 @@ LatticeSymbols lattice_symbols(const Frame& frame, const TrajectoryInfo& info, c
   const BondOrder order = bond_order(cells.neighbours, cells.edge);
   const auto& [left, right, low, high, scale] = view;
   LatticeSymbols s;
-  s.data = "# x, z, radius, class (0 A, 1 between, 2 B, 3 disordered), coordination (0 at a surface)\n";
+  s.data = "# x, z, radius, class (0 A, 1 between, 2 B, 3 disordered), Voronoi neighbours (0 at a surface)\n";
   for (std::size_t i = 0; i < frame.position.size(); ++i) {
     if (!frame.present(i) || !frame.position[i].allFinite() || frame.position[i].z() > high) continue;
     const Vec3 r = info.box.wrap(frame.position[i]);
     const double radius = radius_of(info.radius, i);
     const std::size_t style = style_of(order.psi6[i], order.angle[i]);
-    const std::size_t coordination = cells.enclosed[i] != 0 ? cells.neighbours.count(i) : 0;
-    s.data += fmt::format("{:.5f} {:.5f} {:.4g} {} {}\n", r.x(), r.z(), radius, style, coordination);
+    const std::size_t neighbours = cells.enclosed[i] != 0 ? cells.neighbours.count(i) : 0;
+    s.data += fmt::format("{:.5f} {:.5f} {:.4g} {} {}\n", r.x(), r.z(), radius, style, neighbours);
     const double x = kLatticeMargin + scale * (r.x() - left), y = scale * (high - r.z());
     s.circles[style] +=
         fmt::format("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.3g}\"/>\n", x, y, scale * radius);
     const double half = 0.28 * scale;
-    if (coordination == 5)
+    if (neighbours == 5)
       s.marks += fmt::format("<path d=\"M{:.2f} {:.2f}l{:.2f} {:.2f}h{:.2f}z\" fill=\"{}\"/>\n", x, y - half,
                              half, 2 * half, -2 * half, kVermilion);
-    else if (coordination == 7)
+    else if (neighbours == 7)
       s.marks +=
           fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"{}\"/>\n",
                       x - half, y - half, 2 * half, 2 * half, kBlue);

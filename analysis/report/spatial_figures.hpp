@@ -20,7 +20,8 @@ Figure profiles_figure(const std::vector<Result>& results);
 Figure defect_evolution_figure(const std::vector<Result>& results);
 
 /// Beads of one frame to scale, coloured by the lattice direction (A to B, pale where psi6 is below kOrdered)
-/// and marked where the coordination is 5 or 7. \pre the box is planar
+/// and marked where the number of Voronoi neighbours is 5 or 7.
+/// \pre the box is planar
 Figure lattice_figure(const Frame& frame, const TrajectoryInfo& info, const AnalysisOptions& options);
 
 /// All figures for which the results have values, and the lattice of the last frame.

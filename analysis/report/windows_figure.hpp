@@ -14,9 +14,9 @@ namespace twincell::analysis {
 inline constexpr const char* kWindowNumbers[] = {"s_b", "s_c", "q6"};
 
 /// One figure for each result that is one number, with its interval, against Gamma in the middle of each
-/// window; against omega if Gamma is constant, against the first cycle if both are. Windows in
-/// which this number rises are filled, those in which it falls are open. \param only names of results; empty:
-/// kWindowNumbers
+/// window; against omega if Gamma is constant, against the first cycle if both are. Windows in which this
+/// number rises are filled, those in which it falls are open.
+/// \param only names of results; empty: kWindowNumbers
 std::vector<Figure> windows_figures(const std::vector<Window>& windows, const std::vector<std::string>& only);
 
 }  // namespace twincell::analysis

@@ -16,6 +16,7 @@ enum class OnsetAgreement {
   compatible,  ///< the intervals have a common point
   different,   ///< they have none
 };
+/// Agreement of two onsets of one phase.
 OnsetAgreement agreement_of(const PhaseBoundary& a, const PhaseBoundary& b);
 
 /// One sentence for each onset that experiment and simulation (or, without one, a sweep) both have at one N_l

@@ -10,7 +10,6 @@
 #include "analysis/motion/bed_phase.hpp"
 #include "analysis/motion/snapshots.hpp"
 #include "analysis/observable/observable.hpp"
-#include "analysis/order/bond_order.hpp"
 #include "core/choice.hpp"
 
 namespace twincell::analysis {
@@ -59,8 +58,8 @@ struct Run {
   Show show;
 };
 
-/// Analyses a trajectory and places it in the phase diagram. \throws InputError if it has no drive; otherwise
-/// as `analyze`
+/// Analyses a trajectory and places it in the phase diagram.
+/// \throws InputError if it has no drive; otherwise as `analyze`
 Run analyze_run(const TrajectorySource& trajectory, Side side, const AnalysisOptions& options = {},
                 Progress& progress = Progress::none());
 
@@ -97,7 +96,8 @@ inline constexpr std::array kMatchVerdicts = {
     Choice<MatchVerdict>{MatchVerdict::undetermined, "undetermined",
                          "the runs of one side disagree or have no phase"}};
 /// Compares the common phase of the experiments of a match with that of its simulations; a side without runs
-/// is named instead. \param runs the runs to which the indices of the match refer
+/// is named instead.
+/// \param runs the runs to which the indices of the match refer
 MatchVerdict verdict(const std::vector<Run>& runs, const Match& match);
 /// The word of the verdict on a match.
 std::string verdict_word(const std::vector<Run>& runs, const Match& match);

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -14,7 +13,6 @@
 #include <numbers>
 #include <optional>
 #include <set>
-#include <string_view>
 #include <unordered_map>
 #include <utility>
 
@@ -479,7 +477,7 @@ std::optional<std::pair<std::size_t, std::size_t>> shared_frame(const Arrangemen
 void require_one_condition(const std::vector<const TrajectorySource*>& trajectories) {
   constexpr double kSameDrive = 0.02, kSameBeads = 0.1;
   const auto refuse = [](const TrajectorySource& a, const TrajectorySource& b, const std::string& why) {
-    throw ConfigError({.file = b.name(), .key = "conditions"},
+    throw ConfigError({.file = b.name(), .key = {}},
                       fmt::format("cannot be pooled with {}: {}", a.name(), why));
   };
   std::vector<RunEnds> ends;

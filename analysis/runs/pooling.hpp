@@ -29,7 +29,8 @@ namespace twincell::analysis {
 ///
 /// `n` is the number of runs, and `of_runs` has the value of each run (NaN if a run has none).
 /// \param only names of the requested results; empty: all
-/// \pre runs is not empty \throws ConfigError if one run repeats another (repeated_runs)
+/// \pre runs is not empty
+/// \throws ConfigError if one run repeats another (repeated_runs)
 std::vector<Result> pool(const std::vector<std::vector<Result>>& runs,
                          const std::vector<std::string>& only = {});
 
@@ -37,8 +38,10 @@ std::vector<Result> pool(const std::vector<std::vector<Result>>& runs,
 /// the arrays and both ends of intervals.
 std::vector<std::string> needed_to_pool(const std::vector<std::string>& only);
 
-/// The results of one run, or the pooled results of several. \param analyse analyses the run of that index
-/// with the given options, which request what pooling needs \pre runs > 0 \throws as pool()
+/// The results of one run, or the pooled results of several.
+/// \param analyse analyses the run of that index with the given options, which request what pooling needs
+/// \pre runs > 0
+/// \throws as pool()
 std::vector<Result> analyze_together(
     std::size_t runs, const AnalysisOptions& options,
     const std::function<std::vector<Result>(std::size_t, const AnalysisOptions&)>& analyse);
@@ -60,11 +63,12 @@ struct RunEnds {
   Frame first, last;
 };
 
-/// Rejects runs that cannot be pooled. \throws ConfigError with the names of two runs and the property in
-/// which they differ: source, dimension, Gamma, omega or width (2 %), number of beads (10 %), phases per
-/// cycle, kind of start, and, where the provenance of both contains a scene, a key of its tables contact,
-/// beads or cell (bed_keys); or if both contain the same run, bead for bead, or a frame in common, except
-/// their first ones \pre every trajectory has frames
+/// Rejects runs that cannot be pooled.
+/// \throws ConfigError with the names of two runs and the property in which they differ: source, dimension,
+/// Gamma, omega or width (2 %), number of beads (10 %), phases per cycle, kind of start, and, where the
+/// provenance of both contains a scene, a key of its tables contact, beads or cell (bed_keys); or if both
+/// contain the same run, bead for bead, or a frame in common, except their first ones
+/// \pre every trajectory has frames
 void require_one_condition(const std::vector<const TrajectorySource*>& trajectories);
 
 }  // namespace twincell::analysis

@@ -107,7 +107,7 @@ std::vector<Window> analyze_windows(const TrajectorySource& trajectory, const An
   const Where where{.file = trajectory.name(), .key = "window_cycles"};
   if (cycles < 1) throw ConfigError(where, fmt::format("a window of {} cycles is empty; at least 1", cycles));
   if (options.cycles > 0)
-    throw ConfigError({.file = {}, .key = "cycles"}, "chooses cycles, but the windows cover all of them");
+    throw ConfigError({.file = {}, .key = "--cycles"}, "chooses cycles, but the windows cover all of them");
   if (trajectory.n_frames() == 0)
     throw InputError({.file = trajectory.name(), .key = {}}, "the trajectory contains no frame");
   if (!trajectory.info().columns.phase)

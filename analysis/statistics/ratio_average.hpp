@@ -21,6 +21,7 @@ namespace twincell::analysis {
 /// of equally many consecutive pairs are stored, as in SeriesAverage.
 class RatioAverage {
  public:
+  /// Adds the next pair.
   void add(double a, double b);
   [[nodiscard]] std::size_t n() const { return n_; }
   /// R; NaN if there are no pairs or sum b = 0.

@@ -48,10 +48,6 @@ constexpr std::size_t kItemsToResample = 6;
 /// tracers, of which one had moved, was 0.3 [0, 194]. Skewed items that are not degenerate stay below.
 constexpr double kMaxStudents = 4;
 
-double mean_of(const std::vector<double>& x) {
-  return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
-}
-
 double normal_cdf(double z) {
   return boost::math::cdf(boost::math::normal(), z);
 }
@@ -74,7 +70,7 @@ double student_t_95(double degrees) {
 
 double correlation_time(const std::vector<double>& series) {
   if (series.size() < 2) return kNaN;
-  const double mean = mean_of(series);
+  const double mean = twincell::analysis::mean(series);
   double squares = 0;
   for (const double x : series) squares += (x - mean) * (x - mean);
   // The correlation of a series that is constant up to rounding is meaningless.
@@ -116,7 +112,7 @@ double SeriesAverage::in_values(double coarse) const {
   if (coarse_length_ == 1 || !(variance() > 0)) return coarse;
   // The variance of the mean is the same in the coarse and in the full series, which gives tau of the full
   // one.
-  const double centre = mean_of(coarse_);
+  const double centre = twincell::analysis::mean(coarse_);
   double squares = 0;
   for (const double block : coarse_) squares += (block - centre) * (block - centre);
   const double of_blocks = squares / static_cast<double>(coarse_.size() - 1);
@@ -230,7 +226,7 @@ std::optional<Interval> bootstrap_interval(
   }
   double acceleration = 0;
   if (left_out.size() == n) {
-    const double centre = mean_of(left_out);
+    const double centre = twincell::analysis::mean(left_out);
     double second = 0, third = 0;
     for (const double v : left_out) {
       second += (centre - v) * (centre - v);
@@ -270,7 +266,7 @@ std::optional<Interval> bootstrap_interval(
   if (interval.low <= value && value <= interval.high) return interval;
   // Resamples that are all on one side give no bound on the other side: the jackknife error replaces it.
   if (left_out.size() != n) return std::nullopt;
-  const double centre = mean_of(left_out);
+  const double centre = twincell::analysis::mean(left_out);
   double squares = 0;
   for (const double v : left_out) squares += (v - centre) * (v - centre);
   const auto items = static_cast<double>(n);
@@ -318,19 +314,6 @@ std::optional<Interval> mean_interval(const std::vector<double>& items, const st
     return std::clamp(quantile, -most, most);
   };
   return Interval{mean - at(0.975) * wide, mean - at(0.025) * wide, 0.95, method};
-}
-
-std::string why_no_mean_interval(const std::vector<double>& items, const std::string& of_what) {
-  if (mean_interval(items, of_what)) return "";
-  const std::size_t n = items.size();
-  if (n < 2) return fmt::format("too few {} for an error: {} of at least 2", of_what, n);
-  if (!std::all_of(items.begin(), items.end(), [](double x) { return std::isfinite(x); }))
-    return fmt::format("not every one of {} {} has a value", n, of_what);
-  const auto [least, largest] = std::minmax_element(items.begin(), items.end());
-  if (*largest - *least <= kSame * static_cast<double>(n) * std::abs(*largest))
-    return fmt::format("the same in all {} {}", n, of_what);
-  return fmt::format("the {} {} scatter too little, relative to their magnitude, for a bootstrap", n,
-                     of_what);
 }
 
 Interval binomial_interval(double successes, double trials, const std::string& of_what) {

@@ -61,6 +61,7 @@ double correlation_time(const std::vector<double>& series);
 /// 94 % of the intervals or more contain the mean; docs/statistics.md states other processes.
 class SeriesAverage {
  public:
+  /// Adds the next value of the series.
   void add(double value);
   [[nodiscard]] std::size_t n() const { return n_; }
   /// Mean of all values; NaN if there are none.
@@ -119,9 +120,6 @@ std::optional<Interval> bootstrap_interval(
 std::optional<Interval> mean_interval(const std::vector<double>& items, const std::string& of_what,
                                       std::uint64_t seed = 1, std::size_t resamples = 1000);
 
-/// Why `mean_interval` of these items is absent; empty if it is present.
-std::string why_no_mean_interval(const std::vector<double>& items, const std::string& of_what);
-
 /// Exact 95 % interval of a probability from `successes` in `trials` independent trials (Clopper & Pearson
 /// 1934), by quantiles of the beta distribution. Without a success it is the one-sided 95 % upper limit 1 -
 /// 0.05^(1/trials) (about 3/trials); without a failure it is the one-sided lower limit.
@@ -130,7 +128,8 @@ Interval binomial_interval(double successes, double trials, const std::string& o
 
 /// 95 % interval of a probability from effective counts, which are estimates and have no exact interval:
 /// Wilson's interval (1927). Its coverage is 95 % on average, whereas that of Clopper and Pearson is at least
-/// 95 %. \pre 0 < successes < trials
+/// 95 %.
+/// \pre 0 < successes < trials
 Interval wilson_interval(double successes, double trials, const std::string& of_what);
 
 }  // namespace twincell::analysis

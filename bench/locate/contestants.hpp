@@ -18,6 +18,7 @@ struct Contestant {
   std::function<std::vector<cv::Point2d>(const cv::Mat1b&, const imaging::rendered::Case&)> find;
 };
 
+/// All contestants, in the order of the table.
 std::vector<Contestant> contestants();
 
 /// The settings of one of OpenCV's transforms.

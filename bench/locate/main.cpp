@@ -26,6 +26,7 @@
 #include "bench/locate/contestants.hpp"
 #include "core/malloc_tuning.hpp"
 #include "imaging/benchmark/cases.hpp"
+#include "imaging/benchmark/cramer_rao_bound.hpp"
 #include "imaging/benchmark/detection_score.hpp"
 
 using namespace twincell::bench;

@@ -93,19 +93,19 @@ CalibrationCost measure_calibration(const std::vector<int>& frames, Progress& pr
       cost.numbers.push_back({.name = name, .unit = unit, .frames = n, .stated = stated, .actual = actual});
     };
     Pictures pictures(film, n);
-    double start = cpu_seconds();
+    double start = thread_cpu_seconds();
     const StackEdges edges = read_stack_edges(pictures, false, kScale, 1);
-    time.edges_s = cpu_seconds() - start;
-    start = cpu_seconds();
+    time.edges_s = thread_cpu_seconds() - start;
+    start = thread_cpu_seconds();
     const CellGeometry g = fit_cell_geometry(edges);
     const DriveFit lock = fit_drive(g.heights_px(), {.model_error = kHeightModelError_px});
-    time.fit_s = cpu_seconds() - start;
-    start = cpu_seconds();
+    time.fit_s = thread_cpu_seconds() - start;
+    start = thread_cpu_seconds();
     Pictures again(film, n);
     imaging::LocatorOptions locator;
     locator.diameter_px = kScale;
     const SizeStatistics census = count_beads(locate_beads(again, locator, std::nullopt, 12, 1));
-    time.beads_s = cpu_seconds() - start;
+    time.beads_s = thread_cpu_seconds() - start;
     cost.times.push_back(time);
 
     const imaging::PixelFrame& map = camera.pixel_frame();

@@ -37,8 +37,8 @@ struct CalibrationCost {
 /// Measures the accuracy and cost of a calibration. The synthetic camera, with its default options, films a
 /// crystal of 12 x 6 beads that rides on a plate (Gamma = 0.9, 20 frames per cycle, 14.3 px per bead). For
 /// each n in `frames` the calibration uses the first n frames. The restitution comes from the synthetic
-/// heights of a bouncing bead, with the same number of frames. \param frames frame counts, each at least 20,
-/// in rising order
+/// heights of a bouncing bead, with the same number of frames.
+/// \param frames frame counts, each at least 20, in rising order
 CalibrationCost measure_calibration(const std::vector<int>& frames, Progress& progress = Progress::none());
 
 }  // namespace twincell::calibration

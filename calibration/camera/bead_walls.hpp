@@ -20,8 +20,8 @@ struct BeadWalls {
 /// Fits one straight line per wall. Beads are sorted into slices of height 0.5 sigma. In each slice with at
 /// least 20 beads, the point of the wall is the mean position of the outermost hundredth (at least three) of
 /// the beads' surfaces over all frames. If no bead touches a wall, the fitted wall is at the closest approach
-/// of the beads, which is inside the true wall. \throws InputError if fewer than three slices of a side have
-/// enough beads
+/// of the beads, which is inside the true wall.
+/// \throws InputError if fewer than three slices of a side have enough beads
 BeadWalls walls_from_beads(const TrajectorySource& trajectory);
 
 }  // namespace twincell::calibration

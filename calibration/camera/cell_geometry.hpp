@@ -3,8 +3,8 @@
 /// Geometry of a filmed cell from its edges in many frames: positions and tilts of the walls, position of the
 /// plate, rotation and radial distortion of the picture.
 ///
-/// In the ideal picture (camera/lens.hpp undone) the plate is level, at row y_p + its motion, and the walls
-/// are the lines
+/// In the ideal picture (imaging/geometry/lens.hpp undone) the plate is level, at row y_p + its motion, and
+/// the walls are the lines
 ///     x = x_l - tan(tilt_l) (y_p - y),    x = x_r + tan(tilt_r) (y_p - y).
 /// Tilts count outward, as cell.side_tilt of a scene, and the feet of the walls move with the plate. The
 /// rotation is that of the plate. All three edges contribute to the distortion k1.
@@ -60,8 +60,8 @@ struct CellGeometry {
 
   /// Plate height of each frame, px; NaN: not detected. Input of fit_drive.
   [[nodiscard]] std::vector<double> heights_px() const;
-  /// Cell width x_right - x_left at the plate's mean height, and its standard error. \pre both walls were
-  /// fitted
+  /// Cell width x_right - x_left at the plate's mean height, and its standard error.
+  /// \pre both walls were fitted
   [[nodiscard]] double width_px() const;
   [[nodiscard]] double width_error_px() const;
 };
@@ -70,8 +70,8 @@ struct CellGeometry {
 /// the cell, so the edge is the outermost line that enough points share. Points of a wall in the same row are
 /// averaged over the frames first, so that an error that is equal in every frame (dust) does not count as
 /// many measurements. Standard errors come from the scatter of the points, with blocks one bead wide: within
-/// a block the errors are correlated where a bead or dust obscures the light. \throws InputError if neither
-/// the plate nor a wall is detected
+/// a block the errors are correlated where a bead or dust obscures the light.
+/// \throws InputError if neither the plate nor a wall is detected
 CellGeometry fit_cell_geometry(const StackEdges& edges, bool with_distortion = true);
 
 }  // namespace twincell::calibration

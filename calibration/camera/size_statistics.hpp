@@ -27,8 +27,8 @@ struct SizedBead {
 struct BeadFrames {
   std::vector<std::vector<SizedBead>> frames;  ///< [frames][beads]
   std::vector<std::size_t> counts;             ///< [frames], beads cut by the border included
-  /// [frames] places of dark objects of another size than the beads, which count as no beads. Discs that were
-  /// fitted less than a bead diameter from their mean place, as in one larger disc, are one object; radius 0.
+  /// [frames] positions of dark objects of another size, which do not count as beads; their radius is 0.
+  /// Discs fitted within a bead diameter of their mean position are one object, such as a larger disc.
   std::vector<std::vector<SizedBead>> others;
   /// Systematic errors of the diameters beyond their noise: of the mean, and from disc to disc, which depends
   /// on the contacts of each disc. 0: no systematic error.
@@ -41,13 +41,13 @@ struct BeadFrames {
 /// discs of equal size, which is due to their neighbours.
 inline constexpr double kDiameterModelError_px = 0.002, kDiameterModelScatter_px = 0.012;
 /// Locates the beads in up to `most` frames, spread over the stack. Options that are not set are chosen from
-/// the first frames (configure_locator.hpp). \param lens if given, its distortion is removed from positions
-/// and radii
+/// the first frames (configure_locator.hpp).
+/// \param lens if given, its distortion is removed from positions and radii
 BeadFrames locate_beads(imaging::FrameSource& frames, const imaging::LocatorOptions& options,
                         const std::optional<imaging::Lens>& lens, int most, int threads,
                         Progress& progress = Progress::none());
-/// The same from up to `most` frames of a trajectory, in sigma, with the trajectory's own radii. \throws
-/// InputError if it has no radii
+/// The same from up to `most` frames of a trajectory, in sigma, with the trajectory's own radii.
+/// \throws InputError if it has no radii
 BeadFrames beads_of(const TrajectorySource& trajectory, int most);
 
 /// A number and its standard error.
@@ -74,8 +74,8 @@ struct SizeStatistics {
 std::string others_in_words(const BeadFrames& beads);
 
 /// Computes the statistics. Beads of one frame count as independent, the same beads in other frames do not:
-/// the standard errors of quantities that vary between beads use the number of beads in one frame. \throws
-/// InputError for fewer than 3 beads
+/// the standard errors of quantities that vary between beads use the number of beads in one frame.
+/// \throws InputError for fewer than 3 beads
 SizeStatistics count_beads(const BeadFrames& beads);
 
 }  // namespace twincell::calibration

@@ -35,7 +35,8 @@ double diameter_for_edges(const std::filesystem::path& stack, bool bright, doubl
 std::optional<double> frame_rate_of(std::optional<double> stated, const StackEdges& edges,
                                     const std::filesystem::path& stack,
                                     const imaging::FrameRange& range = {});
-/// Finds the edges in every frame; reads the stack once. \throws InputError as FrameSource
+/// Finds the edges in every frame; reads the stack once.
+/// \throws InputError as FrameSource
 StackEdges read_stack_edges(imaging::FrameSource& frames, bool bright, double diameter_px, int threads,
                             Progress& progress = Progress::none());
 

@@ -601,7 +601,7 @@ void SeriesFit::add_mean(BounceFit& out, const Eigen::MatrixXd& covariance) cons
     const double most = (e.array() - e.mean()).square().sum() + covariance.trace();
     mean = scattered(find_scatter([&](double variance) { return scattered(variance).chi2; }, freedom,
                                   {0, most, kHalvings, false})
-                         .enough);
+                         .upper);
   }
   out.restitution = mean.mean;
   out.restitution_error = mean.error;

@@ -36,7 +36,8 @@ struct FoundCollisions {
 /// second, and meet in between on straight relative paths (gravity is common to both beads). The collision
 /// normal is the mean of the normals extrapolated from both frames. Velocities come from the file or, if it
 /// has none, from differences between two frames, corrected for gravity. Spins come from the file or are
-/// unknown. \throws InputError for fewer than 2 frames, or 4 if the file has no velocities
+/// unknown.
+/// \throws InputError for fewer than 2 frames, or 4 if the file has no velocities
 FoundCollisions find_collisions(const TrajectorySource& trajectory, const CollisionOptions& options = {});
 
 }  // namespace twincell::calibration

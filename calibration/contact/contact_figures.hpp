@@ -15,7 +15,8 @@ namespace twincell::calibration {
 
 /// "bounce": e_n of each impact against its speed, with the mean and its error.
 analysis::Figure bounce_figure(const BounceFit& fit);
-/// "collisions": e_n against speed, and Walton's plane with the fitted branches. \param shape K
+/// "collisions": e_n against speed, and Walton's plane with the fitted branches.
+/// \param shape K
 analysis::Figure collisions_figure(const FoundCollisions& found, const WaltonFit& fit, double shape);
 /// "profile": chi^2 above its minimum against each parameter, with the 95 % line.
 analysis::Figure profile_figure(const Inference& inference);

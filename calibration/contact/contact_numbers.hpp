@@ -20,9 +20,11 @@ struct SpringDashpot {
   double c_n = 0;      ///< dashpot constant, m/t0
 };
 
-/// Spring and dashpot for a given restitution and contact time. \param restitution e_n in (0, 1] \param
-/// contact_time t_c > 0, t0 \param m_eff > 0: 1/2 for two beads, 1 at a wall \throws ConfigError naming the
-/// number and its bound
+/// Spring and dashpot for a given restitution and contact time.
+/// \param restitution e_n in (0, 1]
+/// \param contact_time t_c > 0, t0
+/// \param m_eff > 0: 1/2 for two beads, 1 at a wall
+/// \throws ConfigError naming the number and its bound
 inline SpringDashpot spring_of(double restitution, double contact_time, double m_eff) {
   require_range({.file = {}, .key = "restitution"}, restitution, 0, 1, true);
   require_range({.file = {}, .key = "contact time"}, contact_time, 0, {}, true);

@@ -230,7 +230,7 @@ GridSearch search(const std::vector<Sought>& sought, const ChiSquared& chi2, int
 }
 
 /// Leave-one-run-out test: the run replaces the measurement, and the surfaces are fitted to all other runs.
-/// \return for each parameter, the rise of the profile above its minimum at the run's own parameter value
+/// \returns for each parameter, the rise of the profile above its minimum at the run's own parameter value
 std::vector<double> excess_of(const std::vector<Sought>& sought, const std::vector<SimulatedPoint>& runs,
                               std::vector<MeasuredObservable> measured, std::size_t run) {
   std::vector<SimulatedPoint> others = runs;

@@ -74,14 +74,15 @@ struct Inference {
   std::vector<std::string> notes;
 };
 
-/// Fits the surfaces and profiles chi^2 over the search ranges. \throws InputError if an observable has fewer
-/// runs than a quadratic surface has coefficients plus two, or if the observables that share runs need more
-/// runs
+/// Fits the surfaces and profiles chi^2 over the search ranges.
+/// \throws InputError if an observable has fewer runs than a quadratic surface has coefficients plus two, or
+/// if the observables that share runs need more runs
 Inference infer_parameters(const std::vector<Sought>& sought, const std::vector<SimulatedPoint>& runs,
                            const std::vector<MeasuredObservable>& measured);
 
 /// `n` points spread evenly over the search ranges by Halton's sequence: a longer sequence contains the
-/// shorter one. \pre at most six ranges
+/// shorter one.
+/// \pre at most six ranges
 std::vector<std::vector<double>> spread_points(const std::vector<Sought>& sought, int n);
 
 }  // namespace twincell::calibration

@@ -195,7 +195,7 @@ WaltonFit fit_walton(const std::vector<Impact>& impacts, double shape) {
                         ? kNoScatter
                         : find_scatter([&](double s) { return scattered(s).chi2; }, n - 1,
                                        {kNoScatter, 16 * width * width + 1e-20, kHalvings, true})
-                              .tried;
+                              .last;
   const WeightedMean mean = scattered(s2);
   out.restitution = mean.mean;
   out.restitution_error = mean.error;

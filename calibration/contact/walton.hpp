@@ -39,7 +39,8 @@ struct WaltonFit {
   std::vector<std::string> notes;
 };
 
-/// Fits e_n, its dependence on speed, and the two tangential branches, with outliers rejected. \param shape K
+/// Fits e_n, its dependence on speed, and the two tangential branches, with outliers rejected.
+/// \param shape K
 /// \throws InputError for fewer than 3 finite impacts
 WaltonFit fit_walton(const std::vector<Impact>& impacts, double shape);
 

@@ -13,7 +13,8 @@ struct VibrationTable {
   std::string file;
   std::vector<double> time_s, acceleration;
 };
-/// Reads a record from a CSV file. \throws InputError, ConfigError as read_table
+/// Reads a record from a CSV file.
+/// \throws InputError, ConfigError as read_table
 VibrationTable read_vibration(const std::filesystem::path& file);
 
 /// Frequency and acceleration amplitude A omega^2 of the fundamental, with standard errors.

@@ -68,7 +68,8 @@ struct BedDrive {
 /// amplitude. If the bed moves like a plate at no phase, the phases are shifted by whole frames; a shift is
 /// accepted if it alone (or one of two neighbours) makes the bed move like a plate of the stated amplitude
 /// within a tenth. A contradiction is a bed that stands still, or whose downward acceleration at some phase
-/// is more than 1.5 times the larger of gravity and the plate's acceleration. \pre `info` states the drive
+/// is more than 1.5 times the larger of gravity and the plate's acceleration.
+/// \pre `info` states the drive
 BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info);
 
 /// What in the motion of a bed contradicts its drive, where the plate in the picture agrees with the

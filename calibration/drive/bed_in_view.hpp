@@ -15,8 +15,9 @@ namespace twincell::calibration {
 /// The rims of a heap without a wall, or of a bed that the picture cuts, do not.
 ///
 /// Rims within 0.03 diameters of the place count as touching. There must be 1.5 of them per frame, and twice
-/// as many as between 0.05 and 0.15 diameters inside. The error is the scatter over the touching beads of
-/// one frame, and 0.003 diameters because beads need not touch. \param diameter of a bead
+/// as many as between 0.05 and 0.15 diameters inside. The error is the scatter over the touching beads of one
+/// frame, and 0.003 diameters because beads need not touch.
+/// \param diameter of a bead
 std::optional<Estimate> wall_of_bed(const BeadFrames& beads, double diameter, bool right);
 
 /// Motion of the plate as the bed shows it. Heights count upwards.
@@ -31,9 +32,10 @@ struct PlateOfBed {
 /// cycle. The phases are those of estimate_phases() for the mean height of the beads. At the phases at which
 /// a bed without rebound rests on a plate of this strength (time_at_rest()), the lower side of the bed is
 /// fitted by z_0 + a sin th + c cos th. The lower side is the median over columns one diameter wide of the
-/// lowest rim. \param gamma A omega^2/g of the drive \throws InputError if the bed has no period, frames are
-/// missing or doubled, the bed flies for longer than a cycle, or its lower side does not move as a plate with
-/// these phases (c beyond a fifth of a)
+/// lowest rim.
+/// \param gamma A omega^2/g of the drive
+/// \throws InputError if the bed has no period, frames are missing or doubled, the bed flies for longer than
+/// a cycle, or its lower side does not move as a plate with these phases (c beyond a fifth of a)
 PlateOfBed plate_of_bed(const BeadFrames& beads, double diameter, double gamma);
 
 }  // namespace twincell::calibration

@@ -80,7 +80,8 @@ struct DriveFit {
   [[nodiscard]] bool has_phase(std::size_t frame) const;
 };
 
-/// Fits the drive to the plate's heights. \param heights one per frame, NaN where the plate was not detected
+/// Fits the drive to the plate's heights.
+/// \param heights one per frame, NaN where the plate was not detected
 /// \throws InputError for fewer than 8 heights, or heights that do not change by more than their scatter
 DriveFit fit_drive(const std::vector<double>& heights, const DriveFitOptions& options = {});
 

@@ -327,7 +327,7 @@ DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::files
     compare_omega(check, what, seen, drive->omega, cell.scale.t0_s());
     compare_harmonic(check, what, seen, *drive);
   } catch (const InputError& e) {  // no plate in the picture, or it does not move
-    check.not_comparable = e.what();
+    check.not_comparable = without_full_stop(e.what());
     look_for_plate_elsewhere(check, cell, edges, drive->amplitude);
   }
   if (fixed_phases) compare_frame_rate(check, cell, range, drive->omega);

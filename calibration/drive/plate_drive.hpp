@@ -61,8 +61,8 @@ std::optional<std::string> recorded_disagreement(const TrajectoryInfo& info);
 /// the period is not compared. Also compares omega with the stated frame rate divided by the stated frames
 /// per cycle, with or without a plate in the picture. A plate that is more than two bead diameters from
 /// camera.origin_px is a difference too, and so is a second harmonic that differs from the stated one by more
-/// than 3 % of A and five standard errors. \pre the cell states drive and scale, otherwise nothing is
-/// compared
+/// than 3 % of A and five standard errors.
+/// \pre the cell states drive and scale, otherwise nothing is compared
 DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::filesystem::path& stack,
                           const imaging::FrameRange& range, int threads, Progress& progress,
                           bool fixed_phases = true);
@@ -70,12 +70,13 @@ DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::files
 /// Compares the stated drive with the lower surface of the bed while the bed rests on the plate
 /// (bed_drive.hpp), for films that do not show the plate. A difference of amplitude counts if it exceeds five
 /// standard errors, 10 % and 0.3 px. omega is compared if frame rate and scale are known; a difference counts
-/// above five standard errors and 3 %. \pre `info` states the drive
+/// above five standard errors and 3 %.
+/// \pre `info` states the drive
 DriveCheck check_by_bed(const BedSteps& bed, const TrajectoryInfo& info, std::optional<double> frame_rate_hz);
 
 /// The same after check_by_plate, which found no plate where the cell states it. If the bed cannot be
-/// compared either, a plate elsewhere counts as a difference: the cell file is that of another stack. \pre as
-/// above
+/// compared either, a plate elsewhere counts as a difference: the cell file is that of another stack.
+/// \pre as above
 DriveCheck check_by_bed(const BedSteps& bed, const TrajectoryInfo& info, const DriveCheck& by_plate);
 
 }  // namespace twincell::calibration

@@ -41,9 +41,11 @@ TrackedFilm planned(FilmedCell filmed, imaging::TrackedStack stack, DriveCheck c
 
 FilmedCell stated_cell(const FilmOptions& options, const imaging::FrameRange& range) {
   FilmedCell stated{.cell = imaging::resolve_cell(options.request), .source = {}, .measured_drive = {}};
-  stated.source = imaging::phase_source(options.request.phase, stated.cell, options.request.cell_file);
+  const imaging::StatedPhases phases =
+      imaging::stated_phases(options.request.phase, stated.cell, options.request.cell_file);
+  stated.source = phases.source;
   stated.source.trusted = options.trust_stated_drive;
-  stated.cell.phase_lock = imaging::lock_of_chosen(stated.cell.phase_lock, range);
+  stated.cell.phase_lock = imaging::lock_of_chosen(phases.lock, range);
   return stated;
 }
 

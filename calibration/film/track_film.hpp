@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Tracks a film from the frames to the plan of its trajectory: cell, beads, phases, links, and the check of
-/// the stated drive. `track` and `match` take the same way; `match` looks at the cell between the steps.
+/// the stated drive. `track` and `match` perform the same steps; `match` checks the cell between them.
 
 #include <filesystem>
 #include <functional>
@@ -35,8 +35,8 @@ struct FilmOptions {
 struct FilmedCell {
   imaging::CellDescription cell;
   imaging::PhaseSource source;
-  std::string
-      measured_drive;  ///< the drive as measured on the plate, a sentence; empty if the cell states it
+  /// The drive as measured on the plate, a sentence; empty if the cell states it.
+  std::string measured_drive;
 };
 
 /// A tracked film. Its trajectory is written by write_trajectory(stack, plan, sink).
@@ -50,9 +50,9 @@ struct TrackedFilm {
 /// Opens the frames (prepare_frames); its argument is the options with which the beads are located.
 using OpenFrames = std::function<std::unique_ptr<imaging::FrameSource>(const imaging::LocatorOptions&)>;
 
-/// Step 1: the cell and the phases that the options state, for the chosen frames.
-/// The drive may be incomplete. \throws ConfigError, InputError as resolve_cell, phase_source, lock_of_chosen
-/// drive
+/// Step 1: the cell and the phases that the options state, for the chosen frames. The drive may be
+/// incomplete.
+/// \throws ConfigError, InputError as resolve_cell, stated_phases, lock_of_chosen
 FilmedCell stated_cell(const FilmOptions& options, const imaging::FrameRange& range);
 
 /// Step 2: checks the stated drive against the motion of the plate. Nothing is compared if there is no drive,
@@ -71,13 +71,14 @@ TrackedFilm track_filmed_cell(const OpenFrames& open, FilmedCell filmed, DriveCh
                               const FilmOptions& options, const ProgressOf& progress,
                               StageTimes* times = nullptr);
 
-/// All three steps. \throws as they do
+/// All three steps.
+/// \throws as they do
 TrackedFilm track_film(const OpenFrames& open, const std::filesystem::path& film, const FilmOptions& options,
                        const ProgressOf& progress, StageTimes* times = nullptr);
 
 /// Links the beads of a table and checks the stated drive against the motion of the bed.
 /// \param located names of columns, picture; `options.locating` may contain one diameter and nothing else
-/// \throws ConfigError, InputError as resolve_cell, phase_source, read_located, track_located; ConfigError
+/// \throws ConfigError, InputError as resolve_cell, stated_phases, read_located, track_located; ConfigError
 /// for an option that says how the beads of frames are located
 TrackedFilm track_table(const Table& table, imaging::LocatedTableOptions located, const FilmOptions& options,
                         const ProgressOf& progress, StageTimes* times = nullptr);

@@ -121,7 +121,7 @@ Selected select(const Law& law, const std::vector<DataPoint>& points, const FitW
   return selected;
 }
 
-/// Fit from one start. \return the report; cost_after ranks the results of several starts
+/// Fit from one start. \returns the report; cost_after ranks the results of several starts
 FitReport from_start(const Law& law, const Selected& selected, std::vector<double> parameters) {
   ceres::Problem problem;
   for (const FitPoint& point : selected.points)

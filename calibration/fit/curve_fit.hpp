@@ -46,13 +46,13 @@ struct CurveFit {
   const Law* law = nullptr;
   FitReport fit;
   bool weighted = false;  ///< true: by the points' errors; false: equal weights, error from scatter
-  bool likelihood =
-      false;  ///< the parameters maximise the binomial likelihood of all frequencies, zeros included
+  /// The parameters maximise the binomial likelihood of all frequencies, zeros included.
+  bool likelihood = false;
   std::vector<std::optional<analysis::Interval>> intervals;  ///< 95 % interval of each parameter
   std::vector<PointUse> use;                                 ///< for each input point
   std::size_t n_used = 0;
-  std::size_t n_zero =
-      0;  ///< in the window, but y = 0 and the law is logarithmic: left out unless `likelihood`
+  /// In the window, but y = 0 and the law is logarithmic: left out unless `likelihood`.
+  std::size_t n_zero = 0;
   std::size_t n_outside = 0;  ///< outside the window
   std::size_t n_invalid = 0;  ///< not finite, y < 0 in a logarithmic law, x <= 0 where it must be positive
   std::vector<double> upper_limits;  ///< 95 % limits of zero points with known trials, in input order

@@ -30,9 +30,11 @@ struct FitReport {
 
   /// Root mean square residual, sqrt(2 cost_after/n_residuals).
   [[nodiscard]] double rms() const;
-  /// Value of the parameter called `name`. \pre `names` contains it
+  /// Value of the parameter called `name`.
+  /// \pre `names` contains it
   [[nodiscard]] double value(const std::string& name) const;
-  /// Its standard error; NaN without errors. \pre `names` contains it
+  /// Its standard error; NaN without errors.
+  /// \pre `names` contains it
   [[nodiscard]] double standard_error(const std::string& name) const;
 };
 

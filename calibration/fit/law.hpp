@@ -50,7 +50,8 @@ struct Law {
 
 /// All laws, in order.
 const std::vector<const Law*>& laws();
-/// The law of that name. \throws ConfigError naming all of them
+/// The law of that name.
+/// \throws ConfigError naming all of them
 const Law& law_named(const std::string& name);
 
 }  // namespace twincell::calibration

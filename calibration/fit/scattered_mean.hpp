@@ -17,24 +17,27 @@ struct WeightedMean {
 
 /// Best linear unbiased mean of correlated values.
 WeightedMean weighted_mean(const Eigen::VectorXd& values, const Eigen::MatrixXd& covariance);
-/// Mean of independent values, `scatter` added to the variance of each. \param variances of each value
+/// Mean of independent values, `scatter` added to the variance of each.
+/// \param variances of each value
 WeightedMean weighted_mean(const std::vector<double>& values, const std::vector<double>& variances,
                            double scatter);
 
-/// How s^2 is searched: by halving [low, high], or, if the range covers decades, the logarithm of that range.
+/// The bisection for s^2.
 struct ScatterSearch {
-  double low, high;
-  int halvings;
-  bool of_logarithm;
+  double low, high;   ///< the interval that contains s^2
+  int halvings;       ///< number of bisections
+  bool of_logarithm;  ///< bisect ln s^2, for an interval of several decades; low > 0
 };
 
-/// The end of a search for s^2. Callers differ in which end they use, and their results in the last bits.
+/// The result of the bisection. The two values differ by at most the width of the last interval; callers use
+/// one or the other.
 struct FoundScatter {
-  double tried;   ///< the value tried last, within a bracket of [low, high]
-  double enough;  ///< the upper end of the bracket: chi^2 is at most its expectation
+  double last;   ///< last midpoint
+  double upper;  ///< upper end of the last interval: chi^2 is at most its expectation
 };
 
-/// Finds the s^2 at which chi^2 equals `freedom`. \param chi2 as a function of s^2, descending
+/// Finds the s^2 at which chi^2 equals `freedom`.
+/// \param chi2 as a function of s^2, descending
 FoundScatter find_scatter(const std::function<double(double)>& chi2, double freedom,
                           const ScatterSearch& search);
 

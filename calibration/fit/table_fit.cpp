@@ -165,7 +165,7 @@ void check_fit(const std::string& law, const std::optional<std::array<double, 2>
   (void)law_named(law);
   if (window && !((*window)[0] < (*window)[1]))
     throw ConfigError(
-        {.file = {}, .key = "window"},
+        {.file = {}, .key = "--window"},
         fmt::format("[{:g}, {:g}] is not a window: low must be below high", (*window)[0], (*window)[1]));
 }
 

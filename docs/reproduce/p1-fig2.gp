@@ -78,15 +78,15 @@ set bmargin at screen 0.36
 set size noratio
 set border
 set tics
-set xtics 1 scale 0
+set xtics 8 scale 0
 set ytics 0.2
-set xrange [0.3:8.7]
+set xrange [0.3:32.7]
 set yrange [0:1]
 set title '{/:Bold (c)} random, N_l = 60'
-set xlabel 'number of the bed'
+set xlabel 'beds, by share of A'
 set ylabel 'share of ordered beads' offset 1,0
 set boxwidth 0.8
-set style fill solid border lc rgb '#333333'
+set style fill solid noborder
 plot 'p1-fig2.dat' index 2 using 1:($2+$3+$4) with boxes lc rgb '#E69F00' notitle, '' index 2 using 1:($2+$3) with boxes lc rgb '#DDDDDD' notitle, '' index 2 using 1:2 with boxes lc rgb '#56B4E9' notitle, 1./3 with lines lw 1.5 dt 4 lc rgb '#555555' notitle, 2./3 with lines lw 1.5 dt 4 lc rgb '#555555' notitle
 set lmargin at screen 0
 set rmargin at screen 1

@@ -58,7 +58,8 @@ unset label
 set title '{/:Bold (a)} random, N_l = 20'
 set arrow from first 0.23508,graph 0 to first 0.23508,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
 set label 'B' at first 0.11804,graph 0.06 center
-set label 'E_b = 11.4 (paper 7)' at graph 0.97,0.930 right
+set label 'E_b = 11.4' at graph 0.97,0.930 right
+set label '(paper 7)' at graph 0.97,0.850 right
 set label 'A' at first 0.49067,graph 0.06 center
 plot NaN notitle, 'p1-fig5.dat' index 0 using 1:2:3:4 with yerrorbars pt 9 lc rgb '#009E73' notitle, [0.0330579:0.826446] exp(-1.6838896 - 11.355305*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.0330579:0.826446] exp(-3.0097022 - 7*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle
 set lmargin at screen 0.6167
@@ -66,9 +67,9 @@ set rmargin at screen 0.9778
 set tmargin at screen 0.9500
 set bmargin at screen 0.6150
 set xlabel '1/K_m'
-set xrange [-0.0277777778:0.722222222]
+set xrange [-0.012345679:0.320987654]
 unset logscale x
-set xtics 0.1
+set xtics 0.05
 set format x '%g'
 set ylabel 'p_s'
 set yrange [3.1774445e-07:5.56406443]
@@ -80,12 +81,14 @@ unset label
 set title '{/:Bold (b)} crystal, N_l = 20'
 set arrow from first 0.12642,graph 0 to first 0.12642,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
 set label 'B' at first 0.06371,graph 0.06 center
-set label 'A_2: E_b = 134 (paper 130)' at graph 0.97,0.930 right
-set label 'B: E_b = 32.8 (paper 7)' at graph 0.97,0.840 right
+set label 'A_2: E_b = 97.9' at graph 0.97,0.930 right
+set label '(paper 130)' at graph 0.97,0.850 right
+set label 'B: E_b = 32.3' at graph 0.97,0.710 right
+set label '(paper 7)' at graph 0.97,0.630 right
 set arrow from first 0.18116,graph 0 to first 0.18116,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
 set label 'A_2' at first 0.15379,graph 0.06 center
-set label 'A_1' at first 0.46371,graph 0.06 center
-plot NaN notitle, 'p1-fig5.dat' index 2 using 1:2:3:4 with yerrorbars pt 7 lc rgb '#0072B2' notitle, 'p1-fig5.dat' index 3 using 1:2 with points pt 10 lc rgb '#0072B2' notitle, [0.12642:0.173611] exp(13.297132 - 133.93364*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.12642:0.173611] exp(12.710025 - 130*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle, [0.0330579:0.12642] exp(1.2645121 - 32.803302*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.0330579:0.12642] exp(-0.6521786 - 7*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle
+set label 'A_1' at first 0.27962,graph 0.06 center
+plot NaN notitle, 'p1-fig5.dat' index 2 using 1:2:3:4 with yerrorbars pt 7 lc rgb '#0072B2' notitle, 'p1-fig5.dat' index 3 using 1:2 with points pt 10 lc rgb '#0072B2' notitle, [0.12642:0.173611] exp(7.4820445 - 97.92387*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.12642:0.173611] exp(12.443535 - 130*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle, [0.0330579:0.12642] exp(1.2343494 - 32.269359*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.0330579:0.12642] exp(-0.79224666 - 7*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle
 set lmargin at screen 0.1167
 set rmargin at screen 0.4778
 set tmargin at screen 0.4850
@@ -105,7 +108,8 @@ unset label
 set title '{/:Bold (c)} random, N_l = 40'
 set arrow from first 0.34099,graph 0 to first 0.34099,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
 set label 'B' at first 0.17099,graph 0.06 center
-set label 'E_b = 11.3 (paper 7)' at graph 0.97,0.930 right
+set label 'E_b = 11.3' at graph 0.97,0.930 right
+set label '(paper 7)' at graph 0.97,0.850 right
 set label 'A' at first 0.54363,graph 0.06 center
 plot NaN notitle, 'p1-fig5.dat' index 4 using 1:2:3:4 with yerrorbars pt 9 lc rgb '#009E73' notitle, [0.0330579:1] exp(-0.38610352 - 11.331343*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.0330579:1] exp(-1.8631917 - 7*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle
 set lmargin at screen 0.6167
@@ -113,9 +117,9 @@ set rmargin at screen 0.9778
 set tmargin at screen 0.4850
 set bmargin at screen 0.1500
 set xlabel '1/K_m'
-set xrange [-0.0204081633:0.530612245]
+set xrange [-0.012345679:0.320987654]
 unset logscale x
-set xtics 0.1
+set xtics 0.05
 set format x '%g'
 set ylabel 'p_s'
 set yrange [3.1774445e-07:5.56406443]
@@ -127,11 +131,13 @@ unset label
 set title '{/:Bold (d)} crystal, N_l = 40'
 set arrow from first 0.13845,graph 0 to first 0.13845,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
 set label 'B' at first 0.069727,graph 0.06 center
-set label 'A_2: E_b = 252 (paper 130)' at graph 0.97,0.930 right
-set label 'B: E_b = 18.8 (paper 7)' at graph 0.97,0.840 right
+set label 'A_2: E_b = 252' at graph 0.97,0.930 right
+set label '(paper 130)' at graph 0.97,0.850 right
+set label 'B: E_b = 18.8' at graph 0.97,0.710 right
+set label '(paper 7)' at graph 0.97,0.630 right
 set arrow from first 0.16667,graph 0 to first 0.16667,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
 set label 'A_2' at first 0.15256,graph 0.06 center
-set label 'A_1' at first 0.45647,graph 0.06 center
+set label 'A_1' at first 0.25694,graph 0.06 center
 plot NaN notitle, 'p1-fig5.dat' index 6 using 1:2:3:4 with yerrorbars pt 7 lc rgb '#0072B2' notitle, 'p1-fig5.dat' index 7 using 1:2 with points pt 10 lc rgb '#0072B2' notitle, [0.138453:0.16] exp(32.663366 - 252.48427*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.138453:0.16] exp(13.805136 - 130*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle, [0.0330579:0.138453] exp(0.39884713 - 18.758795*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.0330579:0.138453] exp(-0.61120031 - 7*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle
 set lmargin at screen 0
 set rmargin at screen 1

@@ -58,7 +58,8 @@ unset label
 set title '{/:Bold (a)} random, N_l = 20'
 set arrow from first 0.25315,graph 0 to first 0.25315,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
 set label 'B' at first 0.12708,graph 0.06 center
-set label 'E_b = 11.4 (paper 7)' at graph 0.97,0.930 right
+set label 'E_b = 11.4' at graph 0.97,0.930 right
+set label '(paper 7)' at graph 0.97,0.850 right
 set label 'A' at first 0.49971,graph 0.06 center
 plot NaN notitle, 'p1-truncate-force-clipped.dat' index 0 using 1:2:3:4 with yerrorbars pt 9 lc rgb '#009E73' notitle, [0.0330579:1] exp(-0.4063551 - 11.371837*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.0330579:1] exp(-1.8972526 - 7*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle
 set lmargin at screen 0.6167
@@ -80,10 +81,11 @@ unset label
 set title '{/:Bold (b)} crystal, N_l = 20'
 set arrow from first 0.22948,graph 0 to first 0.22948,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
 set label 'B' at first 0.11524,graph 0.06 center
-set label 'B: E_b = 12.9 (paper 7)' at graph 0.97,0.840 right
+set label 'B: E_b = 12.9' at graph 0.97,0.710 right
+set label '(paper 7)' at graph 0.97,0.630 right
 set arrow from first 0.27778,graph 0 to first 0.27778,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
 set label 'A_2' at first 0.25363,graph 0.06 center
-set label 'A_1' at first 0.51202,graph 0.06 center
+set label 'A_1' at first 0.44753,graph 0.06 center
 plot NaN notitle, 'p1-truncate-force-clipped.dat' index 2 using 1:2:3:4 with yerrorbars pt 7 lc rgb '#0072B2' notitle, 'p1-truncate-force-clipped.dat' index 3 using 1:2 with points pt 10 lc rgb '#0072B2' notitle, [0.0330579:0.229481] exp(0.47639284 - 12.864019*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.0330579:0.229481] exp(-0.20233192 - 7*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle
 set lmargin at screen 0
 set rmargin at screen 1

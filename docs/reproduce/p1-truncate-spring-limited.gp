@@ -58,7 +58,8 @@ unset label
 set title '{/:Bold (a)} random, N_l = 20'
 set arrow from first 0.26639,graph 0 to first 0.26639,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
 set label 'B' at first 0.13369,graph 0.06 center
-set label 'E_b = 12.3 (paper 7)' at graph 0.97,0.930 right
+set label 'E_b = 12.3' at graph 0.97,0.930 right
+set label '(paper 7)' at graph 0.97,0.850 right
 set label 'A' at first 0.50633,graph 0.06 center
 plot NaN notitle, 'p1-truncate-spring-limited.dat' index 0 using 1:2:3:4 with yerrorbars pt 9 lc rgb '#009E73' notitle, [0.0330579:0.826446] exp(-0.72204946 - 12.327567*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.0330579:0.826446] exp(-2.3438317 - 7*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle
 set lmargin at screen 0.6167
@@ -66,7 +67,7 @@ set rmargin at screen 0.9778
 set tmargin at screen 0.9070
 set bmargin at screen 0.2791
 set xlabel '1/K_m'
-set xrange [-0.0204081633:0.530612245]
+set xrange [-0.015625:0.40625]
 unset logscale x
 set xtics 0.1
 set format x '%g'
@@ -80,7 +81,8 @@ unset label
 set title '{/:Bold (b)} crystal, N_l = 20'
 set arrow from first 0.22948,graph 0 to first 0.22948,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
 set label 'B' at first 0.11524,graph 0.06 center
-set label 'B: E_b = 15.3 (paper 7)' at graph 0.97,0.840 right
+set label 'B: E_b = 15.3' at graph 0.97,0.710 right
+set label '(paper 7)' at graph 0.97,0.630 right
 plot NaN notitle, 'p1-truncate-spring-limited.dat' index 2 using 1:2:3:4 with yerrorbars pt 7 lc rgb '#0072B2' notitle, 'p1-truncate-spring-limited.dat' index 3 using 1:2 with points pt 10 lc rgb '#0072B2' notitle, [0.0330579:0.229481] exp(0.63161861 - 15.299153*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.0330579:0.229481] exp(-0.32895823 - 7*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle
 set lmargin at screen 0
 set rmargin at screen 1

@@ -58,7 +58,8 @@ unset label
 set title '{/:Bold (a)} random, N_l = 20'
 set arrow from first 0.23508,graph 0 to first 0.23508,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
 set label 'B' at first 0.11804,graph 0.06 center
-set label 'E_b = 11.4 (paper 7)' at graph 0.97,0.930 right
+set label 'E_b = 11.4' at graph 0.97,0.930 right
+set label '(paper 7)' at graph 0.97,0.850 right
 set label 'A' at first 0.49067,graph 0.06 center
 plot NaN notitle, 'p1-truncate-spring.dat' index 0 using 1:2:3:4 with yerrorbars pt 9 lc rgb '#009E73' notitle, [0.0330579:0.826446] exp(-1.6838896 - 11.355305*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.0330579:0.826446] exp(-3.0097022 - 7*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle
 set lmargin at screen 0.6167
@@ -66,9 +67,9 @@ set rmargin at screen 0.9778
 set tmargin at screen 0.9070
 set bmargin at screen 0.2791
 set xlabel '1/K_m'
-set xrange [-0.0277777778:0.722222222]
+set xrange [-0.012345679:0.320987654]
 unset logscale x
-set xtics 0.1
+set xtics 0.05
 set format x '%g'
 set ylabel 'p_s'
 set yrange [3.37167706e-06:5.08088698]
@@ -80,12 +81,14 @@ unset label
 set title '{/:Bold (b)} crystal, N_l = 20'
 set arrow from first 0.12642,graph 0 to first 0.12642,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
 set label 'B' at first 0.06371,graph 0.06 center
-set label 'A_2: E_b = 134 (paper 130)' at graph 0.97,0.930 right
-set label 'B: E_b = 32.8 (paper 7)' at graph 0.97,0.840 right
+set label 'A_2: E_b = 97.9' at graph 0.97,0.930 right
+set label '(paper 130)' at graph 0.97,0.850 right
+set label 'B: E_b = 32.3' at graph 0.97,0.710 right
+set label '(paper 7)' at graph 0.97,0.630 right
 set arrow from first 0.18116,graph 0 to first 0.18116,graph 1 nohead lw 1 dt 2 lc rgb '#666666'
 set label 'A_2' at first 0.15379,graph 0.06 center
-set label 'A_1' at first 0.46371,graph 0.06 center
-plot NaN notitle, 'p1-truncate-spring.dat' index 2 using 1:2:3:4 with yerrorbars pt 7 lc rgb '#0072B2' notitle, 'p1-truncate-spring.dat' index 3 using 1:2 with points pt 10 lc rgb '#0072B2' notitle, [0.12642:0.173611] exp(13.297132 - 133.93364*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.12642:0.173611] exp(12.710025 - 130*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle, [0.0330579:0.12642] exp(1.2645121 - 32.803302*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.0330579:0.12642] exp(-0.6521786 - 7*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle
+set label 'A_1' at first 0.27962,graph 0.06 center
+plot NaN notitle, 'p1-truncate-spring.dat' index 2 using 1:2:3:4 with yerrorbars pt 7 lc rgb '#0072B2' notitle, 'p1-truncate-spring.dat' index 3 using 1:2 with points pt 10 lc rgb '#0072B2' notitle, [0.12642:0.173611] exp(7.4820445 - 97.92387*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.12642:0.173611] exp(12.443535 - 130*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle, [0.0330579:0.12642] exp(1.2343494 - 32.269359*x) with lines lw 1.8 lc rgb '#333333' notitle, [0.0330579:0.12642] exp(-0.79224666 - 7*x) with lines lw 1.5 dt 4 lc rgb '#555555' notitle
 set lmargin at screen 0
 set rmargin at screen 1
 set tmargin at screen 0.1302

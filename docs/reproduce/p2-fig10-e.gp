@@ -43,9 +43,9 @@ unset logscale x
 set xtics 0.05
 set format x '%g'
 set ylabel 'α'
-set yrange [0.333719828:3.26470234]
+set yrange [0.644:2.156]
 unset logscale y
-set ytics 0.5
+set ytics 0.2
 set format y '%g'
 set title '{/:Bold (a)} μ = 0.4, N = 4'
 plot 'p2-fig10-e.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title '2D rough', \

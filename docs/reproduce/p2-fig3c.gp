@@ -42,9 +42,9 @@ set xlabel 'x/d'
 set ylabel 'z/d'
 set xrange [0:10]
 set yrange [-1:12]
-set title '{/:Bold (c)} 2D smooth, W = 2.74, at W_f'
+set title '{/:Bold (c)} 2D smooth, W = 2.74, the paper’s W_f'
 set style fill solid border lc rgb '#444444'
-set cbrange [0:3.21]
+set cbrange [0:4.3]
 set cblabel 'speed about the centre of mass/V_p'
 unset key
 plot 'p2-fig3c.dat' using 1:2:3:4 with circles fc palette, 0 lw 3 lc rgb '#222222'

@@ -49,7 +49,7 @@ set ytics ('' 0.7 1, '' 0.8 1, '' 0.9 1, 1, 2, '' 3 1, '' 4 1, 5, '' 6 1, '' 7 1
 set format y '%g'
 set title 'Power laws of T_z, A = d, N = 4'
 set key maxcols 1
-plot 'p2-table1.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title '2D rough, [W_f, W_2]: α = 1.569', \
+plot 'p2-table1.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title '2D rough, [W_f, W_2]: α = 1.528', \
      'p2-table1.dat' index 1 using 1:2 with lines lt 1 lw 1.8 dt 1 notitle, \
      'p2-table1.dat' index 2 using 1:2:3:4 with yerrorbars lt 2 title '3D rough, [W_f, W_2]: α = 1.256', \
      'p2-table1.dat' index 3 using 1:2 with lines lt 2 lw 1.8 dt 1 notitle, \

@@ -43,13 +43,13 @@ set logscale x
 set xtics (2, '' 3 1, '' 4 1, 5, '' 6 1, '' 7 1, '' 8 1)
 set format x '%g'
 set ylabel 'Δh_{cm}/d'
-set yrange [1.41453145:12.8509293]
+set yrange [1.42785212:10.0715965]
 set logscale y
 set ytics (2, '' 3 1, '' 4 1, 5, '' 6 1, '' 7 1, '' 8 1, '' 9 1, 10)
 set format y '%g'
 set title 'Lift of the centre of mass, A = d, N = 4'
 set key maxcols 1
-plot 'p2-table2.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title '2D rough, [W_f, W_2]: α_h = 1.345', \
+plot 'p2-table2.dat' index 0 using 1:2:3:4 with yerrorbars lt 1 title '2D rough, [W_f, W_2]: α_h = 1.304', \
      'p2-table2.dat' index 1 using 1:2 with lines lt 1 lw 1.8 dt 1 notitle, \
      'p2-table2.dat' index 2 using 1:2:3:4 with yerrorbars lt 2 title '3D rough, [W_f, W_2]: α_h = 0.971', \
      'p2-table2.dat' index 3 using 1:2 with lines lt 2 lw 1.8 dt 1 notitle, \

@@ -22,6 +22,15 @@ double scaled_bessel(double n, double z) {
   return sum / std::sqrt(2 * std::numbers::pi * z);
 }
 
+// The table at index t, by linear interpolation; 0 outside of it.
+double interpolated(const std::vector<double>& table, double t) {
+  if (t < 0) return 0;
+  const auto i = static_cast<std::size_t>(t);
+  if (i + 1 >= table.size()) return 0;
+  const double f = t - static_cast<double>(i);
+  return (1 - f) * table[i] + f * table[i + 1];
+}
+
 }  // namespace
 
 BlurredDisc::BlurredDisc(double radius, double blur) : radius_(radius), blur_(blur), rim_(7 * blur) {
@@ -57,21 +66,11 @@ double BlurredDisc::value(double r) const {
 }
 
 double BlurredDisc::by_distance(double r) const {
-  const double t = (r - first_) / kStep;
-  if (t < 0) return 0;
-  const auto i = static_cast<std::size_t>(t);
-  if (i + 1 >= slope_.size()) return 0;
-  const double f = t - static_cast<double>(i);
-  return (1 - f) * slope_[i] + f * slope_[i + 1];
+  return interpolated(slope_, (r - first_) / kStep);
 }
 
 double BlurredDisc::by_radius(double r) const {
-  const double t = (r - first_) / kStep;
-  if (t < 0) return 0;
-  const auto i = static_cast<std::size_t>(t);
-  if (i + 1 >= by_radius_.size()) return 0;
-  const double f = t - static_cast<double>(i);
-  return (1 - f) * by_radius_[i] + f * by_radius_[i + 1];
+  return interpolated(by_radius_, (r - first_) / kStep);
 }
 
 }  // namespace twincell::imaging::rendered

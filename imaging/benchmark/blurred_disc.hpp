@@ -16,13 +16,20 @@ namespace twincell::imaging::rendered {
 /// P and its derivatives, tabulated for one radius R and one blur s. Lengths in px.
 class BlurredDisc {
  public:
+  /// \param radius R, px, > 0
+  /// \param blur s, px, > 0
   BlurredDisc(double radius, double blur);
-  /// Half width of the rim; beyond it P is 1 or 0 to 1e-12.
+  /// Half width of the rim, px; beyond it P is 1 or 0 to 1e-12.
   [[nodiscard]] double rim() const { return rim_; }
+  /// R, px.
   [[nodiscard]] double radius() const { return radius_; }
-  [[nodiscard]] double value(double r) const;        ///< P, by cubic Hermite interpolation
-  [[nodiscard]] double by_distance(double r) const;  ///< dP/dr, by linear interpolation
-  [[nodiscard]] double by_radius(double r) const;    ///< dP/dR, by linear interpolation
+  /// P, a share of 1, by cubic Hermite interpolation.
+  /// \param r distance from the centre, px, >= 0
+  [[nodiscard]] double value(double r) const;
+  /// dP/dr, 1/px, by linear interpolation.
+  [[nodiscard]] double by_distance(double r) const;
+  /// dP/dR, 1/px, by linear interpolation.
+  [[nodiscard]] double by_radius(double r) const;
 
  private:
   double radius_, blur_, rim_, first_;

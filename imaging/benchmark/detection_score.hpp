@@ -35,6 +35,7 @@ class Marks {
     std::vector<int> found_by_phase;     ///< number of detections positioned in each tenth
     std::vector<int> truth_by_phase;     ///< number of true positions in each tenth
   };
+  /// The summary of all frames so far; lengths in px.
   [[nodiscard]] Summary summary() const;
 
  private:

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/cpu_clock.hpp"
+#include "imaging/benchmark/cramer_rao_bound.hpp"
 #include "imaging/benchmark/detection_score.hpp"
 #include "imaging/benchmark/packing.hpp"
 #include "imaging/benchmark/picture.hpp"
@@ -21,7 +22,8 @@ namespace {
 using rendered::Marks;
 using rendered::Picture;
 
-/// Limits OpenCV to the calling thread, because cpu_seconds() does not count the time of its worker threads.
+/// Limits OpenCV to the calling thread, because thread_cpu_seconds() does not count the time of its worker
+/// threads.
 class OneThread {
  public:
   OneThread() { cv::setNumThreads(1); }
@@ -108,9 +110,9 @@ std::vector<LocatePrecision> locate_precision(const std::vector<LocateSetting>& 
       double seconds = 0;
       for (const Exposure& e : exposures) {
         if (e.diameter != settings[k].diameter_px || e.snr != settings[k].snr) continue;
-        const double before = cpu_seconds();
+        const double before = thread_cpu_seconds();
         const auto centres = found(e.frame, settings[k]);
-        seconds += cpu_seconds() - before;
+        seconds += thread_cpu_seconds() - before;
         if (round == 0) marks[k].add(e.picture, centres, e.bound);
       }
       all[k].seconds = std::min(all[k].seconds, seconds / scene.frames);

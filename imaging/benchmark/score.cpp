@@ -93,7 +93,7 @@ TruthBead bead(const Table& t) {
 
 Scorer::Scorer(ScoredRows rows) : rows_(rows) {
   if (rows.first > rows.last)
-    throw ConfigError(Where{.file = {}, .key = "scored-rows"},
+    throw ConfigError(Where{.file = {}, .key = "--scored-rows"},
                       fmt::format("begin with {:g} and end with {:g}; the first must not exceed the last.",
                                   rows.first, rows.last));
 }

@@ -42,7 +42,9 @@ struct Score {
   std::size_t links = 0;        ///< pairs of consecutive frames in which a bead is found and has an identity
   std::size_t wrong_links = 0;  ///< of these, pairs with two different identities
 
+  /// Share of the beads that are found; 1 without beads.
   [[nodiscard]] double recall() const { return truths > 0 ? double(found) / double(truths) : 1; }
+  /// Share of the detections that match a bead; 1 without detections.
   [[nodiscard]] double precision() const {
     return found + false_finds > 0 ? double(found) / double(found + false_finds) : 1;
   }
@@ -54,7 +56,9 @@ class Scorer {
  public:
   /// \throws ConfigError if the first row lies below the last
   explicit Scorer(ScoredRows rows = {});
+  /// Adds the next frame.
   void add(const std::vector<TruthBead>& truth, const std::vector<FoundBead>& found);
+  /// The score of the frames so far.
   [[nodiscard]] Score score() const;
 
  private:

@@ -5,8 +5,8 @@
 ///
 /// The disc convolved with the Gaussian is P(r), a function of the distance alone. The mean of P over a
 /// pixel's square is, to 1e-6, F0(r) + F4(r) cos 4 theta, with theta the direction from the centre to the
-/// pixel. F0 and F4 are tabulated, so that a pixel costs one look-up. The closed form for a straight edge is
-/// not used.
+/// pixel. F0 and F4 are tabulated, so that a pixel costs one look-up. The rim is not approximated by a
+/// straight edge, for which a closed form exists.
 
 #include <cmath>
 #include <vector>

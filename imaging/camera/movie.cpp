@@ -33,7 +33,7 @@ void sign(const std::filesystem::path& film) {
 }  // namespace
 
 void require_frame_rate(double frames_per_second) {
-  require_range(Where{.file = {}, .key = "fps"}, frames_per_second, 0.01, 1000);
+  require_range(Where{.file = {}, .key = "--fps"}, frames_per_second, 0.01, 1000);
 }
 
 Movie::Movie(const std::filesystem::path& file, cv::Size size, double rate)
@@ -42,7 +42,7 @@ Movie::Movie(const std::filesystem::path& file, cv::Size size, double rate)
   require_frame_rate(rate);
   const std::string kind = file.extension().string();
   if (kind != ".mp4" && kind != ".avi")
-    throw ConfigError(Where{.file = {}, .key = "movie"},
+    throw ConfigError(Where{.file = {}, .key = "--movie"},
                       fmt::format("is '{}'; films are written as .mp4 or .avi.", file.string()));
   const std::vector<std::string> kinds =
       kind == ".avi" ? std::vector<std::string>{"MJPG"} : std::vector<std::string>{"avc1", "mp4v"};

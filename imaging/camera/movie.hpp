@@ -20,15 +20,18 @@ void require_frame_rate(double frames_per_second);
 /// commit().
 class Movie {
  public:
-  /// \throws ConfigError for another extension or a rate outside 0.01 .. 1000,
-  /// RunError if the film cannot be opened
+  /// \param size of the frames, px
+  /// \param frames_per_second 0.01 .. 1000, 1/s
+  /// \throws ConfigError for another extension or another rate
+  /// \throws RunError if the film cannot be opened
   Movie(const std::filesystem::path& file, cv::Size size, double frames_per_second);
   ~Movie();
   Movie(const Movie&) = delete;
   Movie& operator=(const Movie&) = delete;
   /// \param bits depth of the frame; the upper eight bits are shown
   void add(const cv::Mat& frame, int bits);
-  /// Reads the film back, then moves it to its final name. \throws RunError if a frame is missing
+  /// Reads the film back, then moves it to its final name.
+  /// \throws RunError if a frame is missing
   void commit();
 
  private:

@@ -97,9 +97,11 @@ struct CameraOption {
 /// option, add a member to CameraOptions and a line to this list.
 std::vector<CameraOption> camera_option_list(CameraOptions& options);
 
-/// Reads a CAMERA.toml; absent keys keep their defaults. \throws InputError, ConfigError
+/// Reads a CAMERA.toml; absent keys keep their defaults.
+/// \throws InputError, ConfigError
 CameraOptions read_camera(const std::filesystem::path& file);
-/// The same from text. \param name for messages
+/// The same from text.
+/// \param name for messages
 CameraOptions read_camera_text(const std::string& text, const std::string& name);
 
 /// All options as the text of a CAMERA.toml.

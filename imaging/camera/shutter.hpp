@@ -24,7 +24,8 @@ struct Exposure {
 class Shutter {
  public:
   explicit Shutter(const TrajectoryInfo& info);
-  /// Position of a slot at `tau` after the frame's own time, t0. \pre the slot is filled in exposure.now
+  /// Position of a slot at `tau` after the frame's own time, t0.
+  /// \pre the slot is filled in exposure.now
   [[nodiscard]] Vec3 position(const Exposure& exposure, std::size_t slot, double tau) const;
   /// Plate height likewise: from the drive and the frame's phase, or from the frames if these are unknown.
   [[nodiscard]] double plate(const Exposure& exposure, double tau) const;

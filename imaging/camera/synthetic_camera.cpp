@@ -86,7 +86,7 @@ SyntheticCamera::SyntheticCamera(const CameraOptions& stated, const TrajectoryIn
   const double h = (height + 2 * amplitude) * options.pixels_per_sigma + 2 * options.margin_px;
   if (!(w >= 1 && h >= 1 && w <= 20000 && h <= 20000))
     throw ConfigError(
-        Where{.file = {}, .key = "pixels-per-sigma"},
+        Where{.file = {}, .key = "--pixels-per-sigma"},
         fmt::format("makes a frame of {:.0f} x {:.0f} pixels; at most 20000 a side are drawn.", w, h));
   size_ = {cvCeil(w), cvCeil(h)};
   map_.pixels_per_sigma = options.pixels_per_sigma;

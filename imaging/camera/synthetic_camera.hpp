@@ -75,7 +75,8 @@ class SyntheticCamera {
   [[nodiscard]] double path_length_px(const Exposure& exposure, std::size_t slot) const;
   [[nodiscard]] bool has_bright_spot(std::size_t slot) const;
   /// Multiplies the share of light of each pixel by what the bead transmits, and adds its bright spot to the
-  /// glow. \param stamp reused memory
+  /// glow.
+  /// \param stamp reused memory
   void draw_bead(const Exposure& exposure, std::size_t slot, Stamp& stamp, cv::Mat1f& share,
                  cv::Mat1f& glow) const;
   /// Adds the disc at one position of its path, with a weight, to the stamp, and its bright spot to the glow.
@@ -118,11 +119,13 @@ struct Rendered {
   std::size_t doubled = 0;  ///< written twice on purpose
 };
 
-/// Films a trajectory. The outputs appear complete or not at all. \throws ConfigError, RunError
+/// Films a trajectory. The outputs appear complete or not at all.
+/// \throws ConfigError, RunError
 Rendered render(const TrajectorySource& trajectory, const CameraOptions& options, const RenderJob& job,
                 Progress& progress = Progress::none());
 
-/// The same into a folder, with one thread. \returns number of frames
+/// The same into a folder, with one thread.
+/// \returns number of frames
 std::size_t render(const TrajectorySource& trajectory, const CameraOptions& options,
                    const std::filesystem::path& folder, Progress& progress = Progress::none());
 

@@ -10,7 +10,7 @@ std::vector<PixelPoint> find_target(const cv::Mat& grey, const TargetPattern& pa
   if (grey.depth() != CV_8U) cv::normalize(grey, picture, 0, 255, cv::NORM_MINMAX, CV_8U);
   const cv::Size size(pattern.columns, pattern.rows);
   std::vector<cv::Point2f> points;
-  if (pattern.kind == "dots") {
+  if (pattern.kind == TargetKind::dots) {
     if (!cv::findCirclesGrid(picture, size, points, cv::CALIB_CB_SYMMETRIC_GRID)) return {};
   } else {
     if (!cv::findChessboardCorners(picture, size, points)) return {};

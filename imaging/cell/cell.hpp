@@ -67,13 +67,15 @@ struct CellDescription {
   Included included;                ///< values taken from a calibration
   std::string text;                 ///< the resolved configuration as TOML, for provenance
 
-  /// Map between a picture of this size and the cell. \pre origin and pixels_per_sigma are known
+  /// Map between a picture of this size and the cell.
+  /// \pre origin and pixels_per_sigma are known
   [[nodiscard]] PixelFrame pixel_frame(cv::Size picture) const {
     return pixel_frame(picture, *pixels_per_sigma, *origin);
   }
   /// The same with scale and origin given.
   [[nodiscard]] PixelFrame pixel_frame(cv::Size picture, double scale_px, PixelPoint zero) const;
-  /// A, omega and the harmonics; absent if no drive is stated. \throws ConfigError as solve_drive
+  /// A, omega and the harmonics; absent if no drive is stated.
+  /// \throws ConfigError as solve_drive
   [[nodiscard]] std::optional<Drive> drive() const;
   /// The numbers whose units can be checked, as far as they are stated (trajectory/unit_checks.hpp).
   [[nodiscard]] ShakenCell shaken_cell() const;

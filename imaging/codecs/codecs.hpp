@@ -29,6 +29,7 @@ class FilmReader {
 class FilmWriter {
  public:
   virtual ~FilmWriter() = default;
+  /// Appends a frame, 8-bit, of the size of the film.
   virtual void write(const cv::Mat& frame) = 0;
 };
 
@@ -36,7 +37,8 @@ class FilmWriter {
 class Codecs {
  public:
   virtual ~Codecs() = default;
-  /// The picture, as it is stored (cv::imdecode); empty if it cannot be decoded. \throws cv::Exception
+  /// The picture, as it is stored (cv::imdecode); empty if it cannot be decoded.
+  /// \throws cv::Exception
   [[nodiscard]] virtual cv::Mat decode(const std::vector<unsigned char>& bytes) const = 0;
   /// Bytes of `picture` as a file of this ending, ".png" (cv::imencode); empty if that fails.
   /// \param settings pairs of a property, cv::IMWRITE_PNG_COMPRESSION and so on, and its value
@@ -45,15 +47,17 @@ class Codecs {
   /// The film of this name, read by FFmpeg where `only_ffmpeg`; null if it cannot be opened.
   [[nodiscard]] virtual std::unique_ptr<FilmReader> open_film(const std::string& name,
                                                               bool only_ffmpeg) const = 0;
-  /// A new film of colour frames. \param codec four letters: "MJPG" \param rate frames per second \returns
-  /// null if this build of OpenCV has no such codec
+  /// A new film of colour frames.
+  /// \param codec four letters: "MJPG"
+  /// \param rate frames per second
+  /// \returns null if this build of OpenCV has no such codec
   [[nodiscard]] virtual std::unique_ptr<FilmWriter> create_film(const std::string& name,
                                                                 const std::string& codec, double rate,
                                                                 cv::Size size) const = 0;
 };
 
-/// The codecs of the module, which the first call loads. \throws RunError with the reason if the module
-/// cannot be loaded
+/// The codecs of the module, which the first call loads.
+/// \throws RunError with the reason if the module cannot be loaded
 const Codecs& codecs();
 
 }  // namespace twincell::imaging

@@ -81,13 +81,15 @@ enum class BlurFit {
   path     ///< s^2, L_x, L_y
 };
 
-/// Normal equations of the ring of one disc. \pre the model contains the disc itself
+/// Normal equations of the ring of one disc.
+/// \pre the model contains the disc itself
 RingSums ring_sums(const RingArgs& args, const Disc& disc, BlurFit fit);
 
 /// Sums of w J_i J_j^T over the pixels in both rings, J over x, y, R, a, row by row: the coupling of two
 /// neighbours in the normal equations.
 using PairSums = std::array<double, 16>;
-/// The coupling of discs i and j. \pre the model contains both
+/// The coupling of discs i and j.
+/// \pre the model contains both
 PairSums pair_sums(const RingArgs& args, const Disc& i, const Disc& j);
 
 /// Adds a P to the model, out to the distance where P vanishes. Rows are used if their index is a multiple of

@@ -383,7 +383,9 @@ void require_drawable(const TrajectorySource& source, const DrawJob& job) {
   if (job.vectors && !info.columns.velocity)
     refuse("--vectors", "needs velocities, which this trajectory does not have.");
   if (job.contacts && !info.columns.contact_forces)
-    refuse("--contacts", "needs contacts (simulate --contacts), which this trajectory does not have.");
+    refuse(
+        "--contacts",
+        "needs contacts (simulate --contacts, the key time.contacts), which this trajectory does not have.");
   check_colours(job.colours);
 }
 

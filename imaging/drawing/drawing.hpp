@@ -51,7 +51,8 @@ struct Drawn {
 /// Colour of `value` in the map viridis between the ends of `range`, BGR; grey for NaN.
 cv::Vec3b map_colour(double value, const std::array<double, 2>& range);
 
-/// Numbers of the chosen frames, in order. \throws ConfigError if the trajectory lacks them
+/// Numbers of the chosen frames, in order.
+/// \throws ConfigError if the trajectory lacks them
 std::vector<std::size_t> indices_of(const TrajectorySource& source, const FrameRange& range);
 
 /// Cycle, phase and Gamma of a frame, or its time, as a title.

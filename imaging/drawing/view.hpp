@@ -21,12 +21,16 @@ struct Projected {
 /// and above: turned by 30 degrees about z and tilted by 15 degrees, from a distance of three diagonals.
 class View {
  public:
-  /// \param colour_bar whether room for it is left at the right \param pixels_per_sigma in the middle of the
-  /// cell; 0: so that the longer side of the picture of the cell is about 900 px \throws ConfigError if a
-  /// picture would have a side above 8000 px
+  /// \param colour_bar whether room for it is left at the right
+  /// \param pixels_per_sigma in the middle of the cell; 0: so that the longer side of the picture of the cell
+  /// is about 900 px
+  /// \throws ConfigError if a picture would have a side above 8000 px
   View(const Box& box, double bottom, double top, bool colour_bar, double pixels_per_sigma);
 
+  /// The point of the drawing that shows a point of the cell.
+  /// \param r in the cell, sigma
   [[nodiscard]] Projected project(const Vec3& r) const;
+  /// Scale in the middle of the cell, px/sigma.
   [[nodiscard]] double pixels_per_sigma() const { return scale_; }
   [[nodiscard]] double height() const { return height_; }  ///< of the part of the cell that is shown, sigma
   [[nodiscard]] cv::Size size() const { return size_; }    ///< of the whole picture, px

@@ -18,8 +18,8 @@ namespace twincell::imaging {
 /// Options of every finder.
 struct FindOptions {
   double radius_px = 0;  ///< bead radius, > 1.5
-  /// Share of a full circle's edge that must point at a centre, 0 .. 1. Inside a hexagonal packing only the
-  /// six small voids face a bead, 5 to 10 % of its edge. False proposals are cheap: the fit and the judge
+  /// Share of a full circle's edge that must point at a centre, 0.01 .. 1. Inside a hexagonal packing only
+  /// the six small voids face a bead, 5 to 10 % of its edge. False proposals are cheap: the fit and the judge
   /// reject them.
   double min_score = 0.04;
   double apart = 0.8;  ///< smallest distance between two proposals, diameters

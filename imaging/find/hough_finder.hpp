@@ -15,6 +15,7 @@ namespace twincell::imaging {
 /// with the rank.
 struct HoughFinder {
   static constexpr std::string_view name = "hough";
+  /// The proposals, best first. Pure.
   static std::vector<Proposal> find(const Prepared& image, const FindOptions& options);
 };
 

@@ -15,6 +15,7 @@ namespace twincell::imaging {
 /// because their rims are visible.
 struct VoteFinder {
   static constexpr std::string_view name = "vote";
+  /// The proposals, best first. Pure.
   static std::vector<Proposal> find(const Prepared& image, const FindOptions& options);
 };
 

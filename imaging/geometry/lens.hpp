@@ -16,8 +16,9 @@ class Lens {
  public:
   Lens(cv::Size size, double rotation_deg, double distortion);
   [[nodiscard]] bool identity() const { return cos_ == 1 && k1_ == 0; }
+  /// The point of the recorded picture that shows a point of the ideal one, px.
   [[nodiscard]] PixelPoint picture_from_ideal(PixelPoint p) const;
-  /// The inverse map, to 1e-12 of the picture's size.
+  /// The inverse map, px, to 1e-12 of the picture's size.
   [[nodiscard]] PixelPoint ideal_from_picture(PixelPoint p) const;
   /// Ratio of a length in the recorded picture to the ideal length, at a point of the ideal picture: the
   /// square root of the ratio of areas.

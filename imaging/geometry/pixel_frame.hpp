@@ -20,10 +20,13 @@ struct PixelFrame {
                       ///< corner, plate at its mean
   std::optional<Lens> lens = std::nullopt;  ///< absent: the picture is the ideal one
 
+  /// The point of the plane y = 0 of the cell, sigma, at a pixel.
   [[nodiscard]] Vec3 cell_from_pixel(PixelPoint p) const {
     if (lens) p = lens->ideal_from_picture(p);
     return {(p.x_px - origin.x_px) / pixels_per_sigma, 0.0, (origin.y_px - p.y_px) / pixels_per_sigma};
   }
+  /// The pixel of a point of the cell.
+  /// \param r sigma; y is ignored
   [[nodiscard]] PixelPoint pixel_from_cell(const Vec3& r) const {
     const PixelPoint p{origin.x_px + r.x() * pixels_per_sigma, origin.y_px - r.z() * pixels_per_sigma};
     return lens ? lens->picture_from_ideal(p) : p;

@@ -134,6 +134,7 @@ void assign_open_tracks(FrameMatch& m) {
   const Network net = network_of(m);
   if (net.rows.empty()) return;
   Assignment best = assign(net.rows.size(), net.columns.size(), net.edges);
+  m.report.edges = static_cast<std::int64_t>(net.edges.size());
   m.report.networks = static_cast<std::int64_t>(best.networks);
   m.report.largest_network = static_cast<std::int64_t>(best.largest_network);
   m.report.unsolved = static_cast<std::int64_t>(best.unsolved);
@@ -141,7 +142,7 @@ void assign_open_tracks(FrameMatch& m) {
   for (const std::int32_t t : net.rows) from.push_back(m.tracks[static_cast<std::size_t>(t)].place);
   for (const std::int32_t k : net.columns) to.push_back(m.detections[static_cast<std::size_t>(k)]);
   exchange_crossing_links(best, net.edges, from, to, m.options.diameter_px);
-  const double least_margin = std::log(m.options.ambiguous_odds);
+  const double least_margin = std::log(kAmbiguousOdds);
   for (std::size_t i = 0; i < net.rows.size(); ++i) {
     if (best.column_of_row[i] < 0) continue;
     const std::int32_t k = net.columns[static_cast<std::size_t>(best.column_of_row[i])];

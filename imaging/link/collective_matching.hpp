@@ -56,8 +56,8 @@ struct CollectiveMatching {
 struct MatchKnowledge {
   std::span<const std::int32_t> initial;  ///< detection of each bead in a starting solution, < 0: unassigned
   bool all_present = false;               ///< each bead is at one of the detections
-  std::span<const std::uint8_t>
-      newcomers;  ///< 1 for a detection that may be a bead not seen before; empty: no such detection
+  /// 1 for a detection that may be a bead not seen before; empty: no such detection.
+  std::span<const std::uint8_t> newcomers;
 };
 
 /// Matches all beads at once.

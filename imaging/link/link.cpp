@@ -88,11 +88,10 @@ void match_with_lookahead(FrameMatch& m, const FrameAhead& frame, const FrameAhe
 
 Linker::Linker(const LinkOptions& options, int phases_per_cycle) : options_(options) {
   auto at = [](const char* key) { return Where{.file = {}, .key = key}; };
-  require_range(at("diameter"), options.diameter_px, 0, std::nullopt, true);
-  require_range(at("range"), options.range_diameters, 0, 10, true);
-  require_range(at("memory"), options.memory, 0, 1000);
-  require_range(at("max-shift"), options.max_shift_diameters, 0, 10);
-  require_range(at("ambiguous-odds"), options.ambiguous_odds, 1, std::nullopt);
+  require_range(at("link.diameter_px"), options.diameter_px, 0, std::nullopt, true);
+  require_range(at("--range"), options.range_diameters, 0, 10, true);
+  require_range(at("--memory"), options.memory, 0, 1000);
+  require_range(at("link.max_shift_diameters"), options.max_shift_diameters, 0, 10);
   tracks_.phases = phases_per_cycle > kMaxPhases ? 0 : phases_per_cycle;
   tracks_.cycle_of_phase.assign(static_cast<std::size_t>(tracks_.phases), -2);
 }

@@ -58,8 +58,6 @@ class Linker {
   [[nodiscard]] const std::vector<std::uint8_t>& ambiguous() const { return ambiguous_; }
   /// Number of tracks so far.
   [[nodiscard]] std::int64_t n_tracks() const { return tracks_.numbered; }
-  /// Median step of the beads linked in the last frame, px.
-  [[nodiscard]] PixelPoint common_step() const { return tracks_.step; }
   /// Mean step of the beads linked in the last frame, px.
   [[nodiscard]] PixelPoint mean_step() const { return tracks_.mean_step; }
   /// Counts of the last frame, and of all frames.

@@ -20,8 +20,8 @@ struct LinkCosts {
   double agreeing_steps = 0.3;   ///< d; difference between neighbours' steps that agree
   double agreeing_predictions = 0.1;  ///< d; difference between predictions that agree
   double preference_margin = 0.05;    ///< d; a detection must be closer by this much to be preferred
-  double common_shift_sigma =
-      0.5;  ///< d; standard deviation of the common shift about that of the centre of mass
+  /// d; standard deviation of the common shift about that of the centre of mass.
+  double common_shift_sigma = 0.5;
   std::size_t sample_tracks = 200;  ///< tracks on which the rules are tried
   int neighbour_rounds = 12;        ///< rounds of following neighbours
 
@@ -33,8 +33,8 @@ struct LinkCosts {
 
   // Collective matching: when, and among which choices.
   double touching_reach = 1.3;  ///< d; distance of touching neighbours
-  double separation =
-      0.8;  ///< d; difference of touching neighbours' steps beyond which the frame is rematched
+  /// d; difference of touching neighbours' steps beyond which the frame is rematched.
+  double separation = 0.8;
   double matching_reach = 1.9;        ///< d; reach about an expected position
   std::size_t max_choices = 40;       ///< choices of one track
   std::size_t max_mean_choices = 25;  ///< mean choices of a track; with more, the matching is not attempted

@@ -12,6 +12,7 @@ void LinkReport::add(const LinkReport& f) {
   ambiguous += f.ambiguous;
   births += f.births;
   losses += f.losses;
+  edges += f.edges;
   networks += f.networks;
   largest_network = std::max(largest_network, f.largest_network);
   unsolved += f.unsolved;

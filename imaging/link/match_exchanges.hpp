@@ -19,8 +19,9 @@ class MatchExchanges {
       : problem_(problem), present_(present) {}
   /// Exchanges until no chain lowers the sum, or MatchCosts::exchange_rounds are over.
   void improve();
-  /// Rise of the sum if t takes k and the bead there takes the detection of t; infinity if it exceeds
-  /// MatchCosts::margin_cap. \pre improve() was called, and the matching has not changed since
+  /// Rise of the sum, log-odds, if t takes k and the bead there takes the detection of t; infinity if it
+  /// exceeds MatchCosts::margin_cap.
+  /// \pre improve() was called, and the matching has not changed since
   [[nodiscard]] double rise_of(std::size_t t, std::int64_t k);
 
  private:

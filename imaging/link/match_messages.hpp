@@ -17,7 +17,8 @@ class MatchMessages {
   /// \param problem which outlives this
   explicit MatchMessages(const MatchProblem& problem);
   /// Starts without messages, passes them in sweeps, and resolves remaining conflicts by an assignment with
-  /// the beliefs as costs. \param share fraction of a belief that is sent on: 1 plain, less: tempered
+  /// the beliefs as costs.
+  /// \param share fraction of a belief that is sent on: 1 plain, less: tempered
   [[nodiscard]] MatchSolution pass(double share);
 
  private:

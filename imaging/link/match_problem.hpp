@@ -42,9 +42,9 @@ struct MatchCosts {
   double double_use_cost = 100;          ///< log-odds; two beads on one detection; prevents it in a fusion
 
   // Closed-cell search for the detections of unassigned beads.
-  std::size_t beads_per_unassigned =
-      20;                      ///< it runs if at most 1 + n / beads_per_unassigned beads are unassigned
-  int max_search_length = 40;  ///< beads in its longest chain
+  /// It runs if at most 1 + n / beads_per_unassigned beads are unassigned.
+  std::size_t beads_per_unassigned = 20;
+  int max_search_length = 40;              ///< beads in its longest chain
   std::size_t max_search_moves = 1000000;  ///< its moves per frame; each takes some tenths of a microsecond
 
   // Messages.
@@ -83,36 +83,39 @@ struct MatchProblem {
 
   /// Finds the neighbours. The arguments are those of match_collectively(); places, detections and choices
   /// outlive this.
+  /// \param d bead diameter, px
   MatchProblem(std::span<const PixelPoint> places, std::span<const PixelPoint> detections,
                std::span<const Edge> choices, double d, std::span<const std::uint8_t> newcomers);
 
   [[nodiscard]] std::size_t n() const { return places.size(); }  ///< beads
-  /// Displacement of bead t to detection k, px. \pre k >= 0
+  /// Displacement of bead t to detection k, px.
+  /// \pre k >= 0
   [[nodiscard]] PixelPoint step(std::size_t t, std::int64_t k) const {
     return detections[static_cast<std::size_t>(k)] - places[t];
   }
   /// The other bead of a pair.
   [[nodiscard]] static std::size_t other_of(const Pair& p, std::size_t t) { return p.a == t ? p.b : p.a; }
 
-  /// 2 ln(1 + r^2/w^2) of a difference of steps. \param r2 r^2, d^2
+  /// 2 ln(1 + r^2/w^2), log-odds, of a difference of steps.
+  /// \param r2 r^2, d^2
   [[nodiscard]] static double step_difference_cost(double r2) {
     return kMatchCosts.step_difference_exponent *
            std::log(1 + r2 / (kMatchCosts.step_difference_width * kMatchCosts.step_difference_width));
   }
-  /// Its largest value, which also applies if one of the two beads is unassigned.
+  /// Its largest value, log-odds, which also applies if one of the two beads is unassigned.
   [[nodiscard]] static double capped_step_difference_cost() {
     static const double cost =
         step_difference_cost(kMatchCosts.step_difference_cap * kMatchCosts.step_difference_cap);
     return cost;
   }
-  /// u_t(k); 0 for k < 0 (unassigned), infinity if k is not a choice of t.
+  /// u_t(k), log-odds; 0 for k < 0 (unassigned), infinity if k is not a choice of t.
   [[nodiscard]] double own_cost(std::size_t t, std::int64_t k) const {
     if (k < 0) return 0;
     for (std::size_t e = first[t]; e < first[t + 1]; ++e)
       if (choices[e].column == k) return choices[e].cost;
     return std::numeric_limits<double>::infinity();
   }
-  /// Cost of two neighbours at detections ka and kb, overlap() included.
+  /// Cost, log-odds, of two neighbours at detections ka and kb, overlap() included.
   [[nodiscard]] double pair_cost(const Pair& p, std::int64_t ka, std::int64_t kb) const {
     if (ka < 0 || kb < 0) return p.weight * capped_step_difference_cost();
     const PixelPoint before = places[p.b] - places[p.a];
@@ -125,7 +128,7 @@ struct MatchProblem {
                         : capped_step_difference_cost());
     return cost + overlap(before, change);
   }
-  /// Cost of straight paths on which two discs of one layer would pass through each other.
+  /// Cost, log-odds, of straight paths on which two discs of one layer would pass through each other.
   /// \param before vector from one bead to the other in the previous frame, px
   /// \param change its change in the step, px
   [[nodiscard]] double overlap(PixelPoint before, PixelPoint change) const {
@@ -143,7 +146,8 @@ struct MatchProblem {
     return overlap(places[b] - places[a], step(b, kb) - step(a, ka));
   }
 
-  /// Sum of all costs of a matching. \param owner bead of each detection, < 0: unused
+  /// Sum of all costs of a matching, log-odds.
+  /// \param owner bead of each detection, < 0: unused
   [[nodiscard]] double total(const MatchSolution& matching, const std::vector<std::int64_t>& owner) const;
 
   std::span<const PixelPoint> places, detections;  ///< px

@@ -17,7 +17,9 @@ struct PresentMatching {
   std::vector<std::int64_t> owner_of;  ///< bead of each detection; Assignment::kAlone: unused
 
   explicit PresentMatching(std::size_t detections) : owner_of(detections, Assignment::kAlone) {}
+  /// Replaces the matching, and finds the owners.
   void adopt(MatchSolution solution);
+  /// Sum of all costs, log-odds.
   [[nodiscard]] double total(const MatchProblem& problem) const {
     return problem.total(detection_of, owner_of);
   }

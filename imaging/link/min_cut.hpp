@@ -12,7 +12,7 @@
 
 namespace twincell::imaging {
 
-/// Binary choice for each node: stay or move.
+/// Binary choice for each node: stay or move. Costs are in any one unit.
 class MinCut {
  public:
   explicit MinCut(std::size_t nodes);

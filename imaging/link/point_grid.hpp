@@ -26,7 +26,7 @@ class PointGrid {
   /// Index of point k of the grid among the given points.
   [[nodiscard]] std::size_t original(std::size_t k) const { return static_cast<std::size_t>(original_[k]); }
 
-  /// visit(k, squared distance) for all points within reach.
+  /// Calls visit(k, squared distance, px^2) for all points within `reach`, px.
   template <class Visit>
   void within(PixelPoint p, double reach, Visit&& visit) const {
     if (points_.empty()) return;

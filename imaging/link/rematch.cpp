@@ -124,8 +124,7 @@ void take(FrameMatch& m, const CollectiveMatching& matching) {
     const std::int64_t k = matching.column_of_row[t];
     if (k < 0) continue;
     m.detection_of[t] = static_cast<std::int32_t>(k);
-    if (matching.margin[t] < std::log(m.options.ambiguous_odds))
-      m.mark_ambiguous(static_cast<std::size_t>(k));
+    if (matching.margin[t] < std::log(kAmbiguousOdds)) m.mark_ambiguous(static_cast<std::size_t>(k));
   }
 }
 

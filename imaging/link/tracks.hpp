@@ -44,7 +44,8 @@ struct Tracks {
 
   /// Whether the positions of the previous cycle at the phase of a frame are known.
   [[nodiscard]] bool remember(const FrameTime& time) const;
-  /// Predicted position of a track, px. \pre for the rule `cycle`: time.phase < phases
+  /// Predicted position of a track, px.
+  /// \pre for the rule `cycle`: time.phase < phases
   [[nodiscard]] PixelPoint predict(std::size_t track, PredictionRule rule, const FrameTime& time) const;
   /// Position of a track in free flight: the step repeats itself and grows by the fall.
   [[nodiscard]] PixelPoint in_flight(std::size_t track, double fall_px, const FrameTime& time) const;
@@ -68,8 +69,9 @@ struct FrameLinks {
 
 /// Updates the tracks from the links of a frame: linked tracks take the new positions, missing tracks move
 /// with the common step and end after `memory` frames, detections without a track begin one. `frames` is
-/// unchanged. \param report links, bridged, losses and births are added to it \returns the number of the
-/// track of each detection
+/// unchanged.
+/// \param report links, bridged, losses and births are added to it
+/// \returns the number of the track of each detection
 std::vector<std::int64_t> update(Tracks& tracks, const FrameLinks& links, int memory, LinkReport& report);
 
 }  // namespace twincell::imaging

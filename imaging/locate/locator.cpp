@@ -1,5 +1,7 @@
 #include "imaging/locate/locator.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -83,25 +85,22 @@ void LocatorOptions::check() const {
   auto range = [](const char* key, double value, double lower, double upper) {
     require_range(Where{.file = {}, .key = key}, value, lower, upper);
   };
-  range("diameter", diameter_px, 3, 400);
-  range("min-score", find.min_score, 0.01, 1);
+  range("--diameter", diameter_px, 3, 400);
+  range("--min-score", find.min_score, 0.01, 1);
   for (auto other = other_diameters_px.begin(); other != other_diameters_px.end(); ++other) {
-    range("diameter", *other, 3, 400);
+    range("--diameter", *other, 3, 400);
     if (*other == diameter_px || std::find(other_diameters_px.begin(), other, *other) != other)
-      throw ConfigError(Where{.file = {}, .key = "diameter"}, fmt::format("has {} px twice.", *other));
+      throw ConfigError(Where{.file = {}, .key = "--diameter"}, fmt::format("has {} px twice.", *other));
   }
   if (!other_diameters_px.empty() && model_of(refine) == DiscModel::shared_profile)
-    throw ConfigError(Where{.file = {}, .key = "diameter"},
+    throw ConfigError(Where{.file = {}, .key = "--diameter"},
                       "has several values; discs of several sizes have no common profile.");
   (void)refiner_named(refine.method);
-  range("contrast", preprocess.contrast, 0.01, 2);
-  range("sweeps", refine.sweeps, 1, 100);
-  range("tolerance", refine.tolerance_px, 1e-9, 1);
-  if (refine.ring_px != 0) range("ring", refine.ring_px, 1, 50);
-  range("blur", refine.blur_px, 0, 10);
-  range("radius-spread", refine.radius_spread, 1e-6, 1);
-  range("min-explained", judge.min_score, 0, 1);
-  range("radius-tolerance", judge.radius_tolerance, 0, 1);
+  range("preprocess.contrast", preprocess.contrast, 0.01, 2);
+  range("refine.sweeps", refine.sweeps, 1, 100);
+  if (refine.ring_px != 0) range("refine.ring_px", refine.ring_px, 1, 50);
+  range("refine.blur_px", refine.blur_px, 0, 10);
+  range("--min-explained", judge.min_score, 0, 1);
   const std::vector<std::string> finders = finder_names();
   if (std::find(finders.begin(), finders.end(), finder) == finders.end())
     refuse_word("locator", "locator", finder, finders);
@@ -149,6 +148,8 @@ Located turned_back(LocatorStages stages, const PictureOrientation& orientation,
   Located result;
   result.blur_px = stages.refined.blur_px;
   result.path_px = orientation.back(stages.refined.path_px);
+  if (const DiscProfile& profile = stages.refined.profile; profile.radius_px > 0 && profile.rim() > 0)
+    result.rim = profile.rim() / profile.radius_px;
   result.beads = std::move(stages.judged.beads);
   result.dropped = std::move(stages.refined.dropped);
   result.dropped.insert(result.dropped.end(), stages.judged.dropped.begin(), stages.judged.dropped.end());

@@ -23,10 +23,10 @@ namespace twincell::imaging {
 struct LocatorOptions {
   std::string finder = "vote";  ///< one of finder_names()
   double diameter_px = 0;       ///< bead diameter, 3 .. 400; 0: determined from the first frame
-  std::vector<double>
-      other_diameters_px;  ///< further diameters, 3 .. 400; not with DiscModel::shared_profile
-  bool diameter_of_scale =
-      false;                   ///< diameter_px is the scale of the cell; nobody stated the size of the beads
+  /// Further diameters, 3 .. 400; not with DiscModel::shared_profile.
+  std::vector<double> other_diameters_px;
+  /// diameter_px is the scale that the cell states; no size of the beads was stated.
+  bool diameter_of_scale = false;
   bool polarity_known = true;  ///< preprocess.bright is given; false: determined from the first frame
   PreprocessOptions preprocess;
   FindOptions find;      ///< its radius is set from the diameters
@@ -52,6 +52,8 @@ struct Located {
   std::vector<Detection> dropped;      ///< rejected candidates, each with its verdict
   double blur_px = 0;                  ///< standard deviation of the edge blur, from the fit
   std::array<double, 2> path_px = {};  ///< displacement of the bed in the exposure, x >= 0; 0: not detected
+  /// Radius of the rim of the common profile in that of the discs as they were searched; 1 without a profile.
+  double rim = 1;
   std::vector<StageReport> stages;
 };
 

@@ -22,7 +22,8 @@ struct PictureOrientation {
   [[nodiscard]] bool turns() const { return transpose || flip_x || flip_y; }
   /// The picture in this orientation.
   [[nodiscard]] cv::Mat turned(const cv::Mat& picture) const;
-  /// Transforms a detection from the turned picture to the original. \param size size of the original
+  /// Transforms a detection from the turned picture to the original.
+  /// \param size size of the original
   [[nodiscard]] Detection back(Detection d, cv::Size size) const;
   /// Likewise for a displacement whose sign is arbitrary; the result has x >= 0.
   [[nodiscard]] std::array<double, 2> back(std::array<double, 2> displacement) const;

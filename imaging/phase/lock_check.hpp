@@ -25,12 +25,12 @@ struct LockEvidence {
   std::vector<std::uint8_t> repeats;
 };
 
-/// The phases of a lock, checked against plate and time stamps. PhaseTable::checked_by states the witness;
-/// if it is empty, neither could tell, and PhaseTable::not_checked states why. If frames are missing or
-/// doubled, PhaseTable::frames holds the corrected phases and PhaseTable::warning names the frames.
-/// The plate can tell as in read_plate. Time stamps can tell if the intervals are whole multiples of their
-/// median to a quarter. \pre lock.locked() \throws ConfigError naming the frame and the cure if the plate
-/// moves with another period, or if more than
+/// The phases of a lock, checked against plate and time stamps. PhaseTable::checked_by states the witness; if
+/// it is empty, neither could tell, and PhaseTable::not_checked states why. If frames are missing or doubled,
+/// PhaseTable::frames holds the corrected phases and PhaseTable::warning names the frames. The plate can tell
+/// as in read_plate. Time stamps can tell if the intervals are whole multiples of their median to a quarter.
+/// \pre lock.locked()
+/// \throws ConfigError naming the frame and the cure if the plate moves with another period, or if more than
 ///     one frame in ten would be missing or doubled
 PhaseTable check_lock(const PhaseLock& lock, const LockEvidence& evidence);
 
@@ -43,9 +43,10 @@ void check_lock_by_bed(PhaseTable& table, const BedMotion& motion);
 /// Checks the phases of a list against the plate. It can tell if it is seen in 60 % of the frames and follows
 /// a sine of any period (phases_from_plate). Then the first two harmonics of the listed phases must explain
 /// half of the variance of its height, and the fundamental must be within 0.75 frame intervals of a sine that
-/// begins at phase 0. \param plate_px [frames] LockEvidence::plate_px \param sine whether the drive is known
-/// to have that phase; a recorded one need not \throws ConfigError naming the frames per cycle of list and
-/// plate, or the difference of their phases
+/// begins at phase 0.
+/// \param plate_px [frames] LockEvidence::plate_px
+/// \param sine whether the drive is known to have that phase; a recorded one need not
+/// \throws ConfigError naming the frames per cycle of list and plate, or the difference of their phases
 void check_list_by_plate(PhaseTable& table, std::span<const double> plate_px, bool sine);
 
 /// The frames before which frames are missing, with their number, and the doubled frames, as text: "1 before

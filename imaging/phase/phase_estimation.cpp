@@ -82,7 +82,7 @@ std::size_t first_dip(std::span<const double> dip, double deep) {
 /// \param at_rest the bed does not move
 std::vector<std::size_t> likely_periods(const Steps& steps, int given, bool at_rest) {
   auto refuse = [](const std::string& why) {
-    throw InputError(Where{.file = {}, .key = "phase-lock"},
+    throw InputError(Where{.file = {}, .key = "--phase-lock"},
                      why + "; give --phase-lock N or a list of triggers instead.");
   };
   const std::string does_not_repeat = at_rest

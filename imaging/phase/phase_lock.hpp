@@ -30,9 +30,12 @@ struct PhaseLock {
   double offset = 0;         ///< frame intervals by which every frame was taken later than its phase
 
   [[nodiscard]] bool locked() const { return frames_per_cycle > 0; }
+  /// k of a frame, in 0 .. N_k - 1; -1 if not locked.
+  /// \param frame f >= 0
   [[nodiscard]] std::int32_t phase(std::int64_t frame) const {
     return locked() ? static_cast<std::int32_t>((frame + first_phase) % frames_per_cycle) : -1;
   }
+  /// j of a frame; -1 if not locked.
   [[nodiscard]] std::int64_t cycle(std::int64_t frame) const {
     return locked() ? (frame + first_phase) / frames_per_cycle : -1;
   }
@@ -98,6 +101,8 @@ struct PhaseTable {
   std::string warning;       ///< how a fixed lock contradicts the stack; empty: it does not
 
   [[nodiscard]] bool locked() const { return frames_per_cycle > 0; }
+  /// Phase and cycle of a frame: its entry of `frames`, or, if that is empty, those of the PhaseLock.
+  /// \param frame f >= 0
   [[nodiscard]] FramePhase at(std::int64_t frame) const;
   /// Cycles of the drive at which the frame was taken, since phase 0 of cycle 0. Absent if the frame is out
   /// of lock or nothing is locked.
@@ -110,12 +115,14 @@ struct PhaseTable {
 /// dropped.
 PhaseTable fixed_phases(const PhaseLock& lock);
 
-/// Sets phases, cycles and counts of missing and doubled frames. \param ticks [frames] frame intervals since
-/// frame 0 \pre table.frames_per_cycle and table.first_phase are set
+/// Sets phases, cycles and counts of missing and doubled frames.
+/// \param ticks [frames] frame intervals since frame 0
+/// \pre table.frames_per_cycle and table.first_phase are set
 void set_phases(PhaseTable& table, std::span<const std::int64_t> ticks);
 
 /// Takes the phases of these frames away. Missing and doubled frames in them, and at their ends, are no
-/// longer counted. \pre table.frames has an entry for each frame
+/// longer counted.
+/// \pre table.frames has an entry for each frame
 void leave_out(PhaseTable& table, std::span<const FrameStretch> stretches);
 
 /// "the plate does not follow the drive in 40 of 440 frames (0 to 39); they have no phase and are left out

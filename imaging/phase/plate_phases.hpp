@@ -15,8 +15,8 @@ namespace twincell::imaging {
 
 /// Evidence of the plate in the frames about N frames per cycle.
 struct PlateReading {
-  std::optional<SineSlips>
-      slips;  ///< its sine, with missing and doubled frames; absent: the plate cannot tell
+  /// The sine of the plate, with missing and doubled frames; absent: the plate cannot tell.
+  std::optional<SineSlips> slips;
   std::optional<FreeSine> other;          ///< a sine of another period that explains the heights better
   std::vector<FrameStretch> out_of_lock;  ///< where the plate does not follow `slips`
   std::size_t misread = 0;                ///< further frames in which it is off `slips`
@@ -40,9 +40,11 @@ PlateReading read_plate(std::span<const double> plate_px, int frames_per_cycle);
 /// 0.85 to 1.3 times the apparent period, which missing frames shorten, the one that costs least. If a sine
 /// whose period is not a whole number of frames explains the heights better, the phases are those of its
 /// times (set_phases_of_times). Frames that are out of lock have no phase, and PhaseTable::warning names
-/// them. \param frames_per_cycle N if known; 0: searched for \param offset frame intervals by which every
-/// frame was taken later than its phase; not used where the period is not a whole number \returns nothing if
-/// the plate cannot tell, or if its period differs from N by a frame or more
+/// them.
+/// \param frames_per_cycle N if known; 0: searched for
+/// \param offset frame intervals by which every frame was taken later than its phase; not used where the
+/// period is not a whole number
+/// \returns nothing if the plate cannot tell, or if its period differs from N by a frame or more
 std::optional<PhaseTable> phases_from_plate(std::span<const double> plate_px, int frames_per_cycle,
                                             double offset = 0);
 

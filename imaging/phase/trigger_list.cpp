@@ -45,7 +45,7 @@ std::vector<double> read_cycles(const std::filesystem::path& file, std::optional
   if (time < n && cycle < n)
     refuse("time_s", "and cycles are the same quantity; remove one of the two columns.");
   if (cycle == n && !drive_hz)
-    throw ConfigError(Where{.file = {}, .key = "drive-hz"},
+    throw ConfigError(Where{.file = {}, .key = "--drive-hz"},
                       "the list of triggers is in seconds, so the frequency of the drive is needed.");
   // Lines: one frame each, in the order of the stack.
   std::vector<double> cycles;

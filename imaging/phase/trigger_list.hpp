@@ -18,11 +18,12 @@
 
 namespace twincell::imaging {
 
-/// Reads a list and sets the phases as set_phases_of_times. \param drive_hz frequency of the drive, required
-/// by `time_s` \param frames_per_cycle N_k; 0: one over the median step in cycles, rounded \throws InputError
-/// naming file and line if the list cannot be read, if times decrease, are all the same or all absent, if a
-/// value is not a number, or if both time_s and cycles are present; as check_column_names \throws ConfigError
-/// if the frequency is required but absent
+/// Reads a list and sets the phases as set_phases_of_times.
+/// \param drive_hz frequency of the drive, required by `time_s`
+/// \param frames_per_cycle N_k; 0: one over the median step in cycles, rounded
+/// \throws InputError naming file and line if the list cannot be read, if times decrease, are all the same or
+/// all absent, if a value is not a number, or if both time_s and cycles are present; as check_column_names
+/// \throws ConfigError if the frequency is required but absent
 PhaseTable read_triggers(const std::filesystem::path& file, std::optional<double> drive_hz,
                          int frames_per_cycle = 0);
 

@@ -14,6 +14,7 @@ Surface surface_basis(double x, double y, cv::Size size);
 /// A surface along a row of pixels: a quadratic polynomial in x.
 struct SurfaceRow {
   float flat, slope, curve;
+  /// Value of the surface at pixel x of the row.
   [[nodiscard]] float at(int x) const {
     const auto f = static_cast<float>(x);
     return flat + (slope + curve * f) * f;
@@ -24,14 +25,14 @@ SurfaceRow surface_row(const Surface& surface, int y, cv::Size size);
 
 /// A preprocessed frame, the input of finding and fitting.
 struct Prepared {
-  Surface light =
-      Surface::Zero();  ///< B, grey levels: quadratic surface through the light that reaches the camera
-  cv::Mat1f darkness;   ///< d = 1 - I/B: 0 in full light, about 1 in an opaque disc; each row is followed by
-                        ///< kSpareColumns floats kUnseen
-  cv::Mat1b opaque;     ///< 255 on walls, plate and other dark regions too large to be beads, on straight
-                        ///< bars (straight_bars.hpp), and within two pixels of them; empty if there is no
-                        ///< such region
-  double unit = 1;      ///< share of the light that darkness 1 blocks: PreprocessOptions::contrast
+  /// B, grey levels: quadratic surface through the light that reaches the camera.
+  Surface light = Surface::Zero();
+  cv::Mat1f darkness;  ///< d = 1 - I/B: 0 in full light, about 1 in an opaque disc; each row is followed by
+                       ///< kSpareColumns floats kUnseen
+  cv::Mat1b opaque;    ///< 255 on walls, plate and other dark regions too large to be beads, on straight
+                       ///< bars (straight_bars.hpp), and within two pixels of them; empty if there is no
+                       ///< such region
+  double unit = 1;     ///< share of the light that darkness 1 blocks: PreprocessOptions::contrast
 };
 
 /// Darkness of the discs relative to the background: the mean of the darker of the two classes that Otsu's

@@ -25,17 +25,18 @@ cv::Mat1f flat_of_blank(FrameSource& blank);
 /// \throws InputError if the stack contains no frame
 cv::Mat1f flat_of_stack(FrameSource& first, FrameSource& second);
 
-/// Mean of the frames of a stack. \throws InputError if the stack contains no frame
+/// Mean of the frames of a stack.
+/// \throws InputError if the stack contains no frame
 cv::Mat1f mean_of(FrameSource& frames);
 
 /// The frames of a stack, each minus a background plus the median of the background, of type CV_32F, so that
-/// bright beads stand before an even level. Its next() \throws InputError if a frame differs in size from the
-/// background
+/// bright beads stand before an even level. Its next()
+/// \throws InputError if a frame differs in size from the background
 std::unique_ptr<FrameSource> without_background(std::unique_ptr<FrameSource> frames,
                                                 const cv::Mat1f& background);
 
-/// The frames of a stack, each divided by a flat field, of type CV_32F. Its next() \throws InputError if a
-/// frame differs in size from the flat field
+/// The frames of a stack, each divided by a flat field, of type CV_32F. Its next()
+/// \throws InputError if a frame differs in size from the flat field
 std::unique_ptr<FrameSource> flattened(std::unique_ptr<FrameSource> frames, cv::Mat1f flat);
 
 }  // namespace twincell::imaging

@@ -10,9 +10,10 @@
 
 namespace twincell::imaging {
 
-/// `frames`, each divided by a flat field (flat_field.hpp). \param stack name of the stack, which is read
-/// again for its own flat field \param flat "": no flat field; "stack": computed from the stack itself;
-/// otherwise a stack of the cell without beads
+/// `frames`, each divided by a flat field (flat_field.hpp).
+/// \param stack name of the stack, which is read again for its own flat field
+/// \param flat "": no flat field; "stack": computed from the stack itself; otherwise a stack of the cell
+/// without beads
 /// \throws InputError as open_frames, flat_of_blank, flat_of_stack
 std::unique_ptr<FrameSource> flattened_by(std::unique_ptr<FrameSource> frames,
                                           const std::filesystem::path& stack, const std::string& flat);

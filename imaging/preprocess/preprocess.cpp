@@ -138,7 +138,9 @@ Prepared prepare(const cv::Mat& grey, const PreprocessOptions& options, double r
       d[x] = bright > 0 ? bounded : 0.0F;
     }
   }
-  p.opaque = wall_regions(p, options.bright, radius_px, options.opaque_radii);
+  // A dark region that contains a disc of this many bead radii is a wall.
+  constexpr double kOpaqueRadii = 2.5;
+  p.opaque = wall_regions(p, options.bright, radius_px, kOpaqueRadii);
   return p;
 }
 

@@ -10,9 +10,8 @@ namespace twincell::imaging {
 
 /// Options of the preprocessing.
 struct PreprocessOptions {
-  bool bright = false;        ///< discs brighter than the background (front light), not dark on a back-light
-  double contrast = 1;        ///< darkness of a typical disc, which is scaled to 1, 0.02 .. 1
-  double opaque_radii = 2.5;  ///< a dark region that contains a disc of this many bead radii is a wall, > 1
+  bool bright = false;  ///< discs brighter than the background (front light), not dark on a back-light
+  double contrast = 1;  ///< darkness of a typical disc, which is scaled to 1, 0.01 .. 2
 };
 
 /// Converts a grey frame (CV_8U, CV_16U or CV_32F, one channel) to darkness. Pure.

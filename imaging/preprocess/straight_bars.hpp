@@ -2,11 +2,12 @@
 /// \file
 /// Straight bars: side walls, plate or lid with light behind them.
 ///
-/// Every line of pixels, row or column, is searched from the border through the light to the first dark run.
-/// Where these runs begin on a straight line, at any small tilt, over at least four bead diameters and a
-/// third of the lines of that side, they are a bar. The rims of beads bend within a diameter, so that neither
-/// a row of touching beads nor the face of a crystal is one. Beads below 8 px do not bend visibly: no
-/// bar is reported next to them. The same holds below six times the blur, which the caller has to check.
+/// Every line of pixels, row or column, is searched from the border inwards for its first dark run. These
+/// runs are a bar if they begin on one straight line, which may be tilted slightly, over at least four bead
+/// diameters and a third of the lines of that side. The rims of beads curve within a diameter, so that
+/// neither a row of touching beads nor the face of a crystal is a bar. Rims of beads below 8 px do not curve
+/// visibly: no bar is reported for such beads. The same holds for beads below six times the blur, which the
+/// caller has to check.
 
 #include <opencv2/core.hpp>
 #include <vector>

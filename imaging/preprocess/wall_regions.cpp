@@ -158,13 +158,59 @@ cv::Mat1b regions_as_dark_as_walls(const cv::Mat1f& darkness, double disc_radius
   return regions_of(pixels_darker_than(least_wall_darkness(levels), darkness, levels), disc_radius_px);
 }
 
+/// Thick regions of an even grey between the light and the darkest parts, such as walls of aluminium behind
+/// black beads. Even interiors of beads are no larger than the beads.
+cv::Mat1b even_grey_regions(const cv::Mat1f& darkness, double radius_px, double in_radii) {
+  constexpr float kPalest = 0.2F, kDarkest = 0.8F;         // darkness
+  constexpr float kMaxDeviation = 2.5F, kRipple = 0.012F;  // of the noise; of the light on a wall
+  const cv::Size size = darkness.size();
+  const Noise camera = noise_of(darkness);
+  const auto noise =
+      static_cast<float>(std::sqrt(camera.dark + camera.light * (1 - static_cast<double>(kPalest))));
+  // Quick test, which most frames fail: a square of grey blocks with a small range of levels each.
+  constexpr float kMaxRange = 8;  // of the noise
+  const int block = std::max(2, cvRound(radius_px / 3));
+  const cv::Size blocks(size.width / block, size.height / block);
+  if (blocks.empty()) return {};
+  cv::Mat1b even(blocks, uchar{0});
+  for (int v = 0; v < blocks.height; ++v)
+    for (int u = 0; u < blocks.width; ++u) {
+      const auto is_grey = [](float level) { return level > kPalest && level < kDarkest; };
+      // Most blocks are in the light or in a bead.
+      if (!is_grey(darkness(v * block, u * block)) ||
+          !is_grey(darkness((v + 1) * block - 1, (u + 1) * block - 1)))
+        continue;
+      float least = HUGE_VALF, most = -HUGE_VALF;
+      for (int y = v * block; y < (v + 1) * block; ++y) {
+        const float* row = darkness[y] + u * block;
+        for (int x = 0; x < block; ++x) least = std::min(least, row[x]), most = std::max(most, row[x]);
+      }
+      if (least > kPalest && most < kDarkest && most - least < kMaxRange * noise + 2 * kRipple)
+        even(v, u) = 255;
+    }
+  const int side = std::max(1, static_cast<int>(std::sqrt(2.0) * in_radii * radius_px / block) - 1);
+  cv::Mat1b squares;
+  cv::erode(even, squares, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
+  if (cv::countNonZero(squares) == 0) return {};
+  cv::Mat1f mean, square;
+  constexpr int kWindow = 5;
+  const auto border = cv::BORDER_REFLECT_101 | cv::BORDER_ISOLATED;
+  cv::boxFilter(darkness, mean, CV_32F, {kWindow, kWindow}, cv::Point(-1, -1), true, border);
+  const cv::Mat1f squared = darkness.mul(darkness);
+  cv::boxFilter(squared, square, CV_32F, {kWindow, kWindow}, cv::Point(-1, -1), true, border);
+  const float deviation = kMaxDeviation * noise + kRipple;
+  const cv::Mat1b flat =
+      (square - mean.mul(mean) < deviation * deviation) & (mean > kPalest) & (mean < kDarkest);
+  return regions_of(flat, in_radii * radius_px);
+}
+
 /// Gaussian blur that does not reach into the spare columns beside the picture.
 void blurred(const cv::Mat1f& picture, double by, cv::Mat1f& out) {
   cv::GaussianBlur(picture, out, {0, 0}, by, by, cv::BORDER_DEFAULT | cv::BORDER_ISOLATED);
 }
 
 /// Divides the picture by the level of its dark parts, a quadratic surface. Beyond the levels of these parts
-/// nothing is extrapolated. \return the range of the level, relative to its largest value
+/// nothing is extrapolated. \returns the range of the level, relative to its largest value
 /// \param radius_px of beads, whose gaps do not lower the level
 double divide_by_level(cv::Mat1f& picture, double radius_px) {
   constexpr int kPasses = 4;
@@ -301,6 +347,9 @@ cv::Mat1b wall_regions(const Prepared& image, bool bright, double radius_px, dou
   constexpr double kTail = 2, kFromDark = 0.7, kFromDarkest = 1.55;
   const auto uneven = bright ? unevenly_lit_regions(image, radius_px, in_radii) : std::nullopt;
   cv::Mat1b regions = uneven ? *uneven : regions_as_dark_as_walls(darkness, in_radii * radius_px);
+  if (!bright)
+    if (const cv::Mat1b grey = even_grey_regions(darkness, radius_px, in_radii); !grey.empty())
+      regions = regions.empty() ? grey : cv::Mat1b(regions | grey);
   cv::Mat1b bars = straight_bars(darkness, 2 * radius_px, 2 * in_radii * radius_px);
   if (regions.empty() && bars.empty()) return {};
   const double blur = blur_of(darkness);

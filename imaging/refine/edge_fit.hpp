@@ -16,10 +16,11 @@
 namespace twincell::imaging {
 
 /// Fits each proposal separately, starting from the radius with which it was proposed. Detection::ring_share
-/// is the fraction of the circle on which an edge of the right sign is found. Detection::score is 1 - (spread
-/// of the edge about the circle)^2 / (spread of an edge anywhere on the ring)^2. For discs of more than 50
-/// px, which may be patterned inside, the score is ring_share, and a disc with an edge on less than 0.4 of
-/// its circle is rejected. Pure.
+/// is the share of the circle, 0 .. 1, on which an edge of the right sign is found. Detection::score, at most
+/// 1, is 1 - (spread of the edge about the circle)^2 / (spread of an edge anywhere on the ring)^2. For discs
+/// with a diameter above 50 px, which may be patterned inside, the score is ring_share, and a disc with a
+/// ring_share below 0.4 is rejected. Pure.
+/// \param radius_px > 1.5
 Refined refine_by_edges(const Prepared& image, const std::vector<Proposal>& proposals, double radius_px,
                         const RefineOptions& options = {});
 

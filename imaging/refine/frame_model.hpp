@@ -58,11 +58,13 @@ class FrameModel {
 
   /// Recomputes the model from the beads, in the rows whose index is a multiple of `row_step`.
   void render(int row_step = 1);
-  /// Takes another light. \param levelled d with the new light, with spare columns
+  /// Takes another light.
+  /// \param levelled d with the new light, with spare columns
   void take_picture(const cv::Mat1f& levelled);
   /// Whether the picture is a copy, not shared with the frame.
   [[nodiscard]] bool owns_picture() const { return owned_; }
 
+  /// The discs of the beads, in their order.
   [[nodiscard]] std::vector<Disc> discs() const;
   /// Half width of the ring, px: out to where the edge carries no more information on the position.
   [[nodiscard]] double ring() const;

@@ -8,12 +8,14 @@
 
 namespace twincell::imaging {
 
+/// Largest difference of a bead's radius from a given one, relative to it.
+inline constexpr double kRadiusTolerance = 0.2;
+
 /// Acceptance criteria for a bead.
 struct JudgeOptions {
-  double radius_tolerance = 0.2;       ///< relative to the given radius, 0 .. 1
   std::vector<double> other_radii_px;  ///< further sizes of beads
   double min_interior = 0.35;          ///< median darkness inside R/2
-  double min_score = 0.5;              ///< Detection::score
+  double min_score = 0.5;              ///< smallest Detection::score, 0 .. 1
   bool pale = false;                   ///< a pale disc (RefineOptions) is as pale inside as at its rim
   double max_overlap = 0.25;  ///< largest overlap of two discs, in radii; beyond it the worse is dropped
   double tracer_below = 0.8;  ///< a tracer's interior is below this fraction of the median; 0: no tracers
@@ -32,7 +34,8 @@ struct Judged {
 /// with a better one) and centres outside the frame. Flags discs that are cut by the frame, and tracers:
 /// beads with interiors below tracer_below of the median, or, if there are none, above median/tracer_below,
 /// if a gap separates them from the rest that one population with a log-concave distribution shows in at most
-/// one of a thousand frames. Pure. \param width, height of the frame, px
+/// one of a thousand frames. Pure.
+/// \param width, height of the frame, px
 Judged judge(std::vector<Detection> candidates, double radius_px, int width, int height,
              const JudgeOptions& options);
 

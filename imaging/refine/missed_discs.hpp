@@ -13,8 +13,8 @@ inline constexpr double kMissedDarkness = 0.35;
 
 /// Adds discs inside the frame that were not proposed. Such a disc leaves a dark disc in the residual
 /// picture, of a mean darkness of at least `darkness` over 3 x 3 blocks of pixels that are together about as
-/// wide as the disc. Where a known disc lies, a residual is a misfit of that disc. \returns whether any was
-/// added
+/// wide as the disc. Where a known disc lies, a residual is a misfit of that disc.
+/// \returns whether any was added
 /// \param darkness below kMissedDarkness also discs that are paler, if they are as pale everywhere
 bool add_missed(FrameModel& frame, double darkness);
 

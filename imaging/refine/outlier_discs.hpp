@@ -19,7 +19,9 @@ bool may_have_outliers(const std::vector<Detection>& beads);
 /// repetition would also drop the neighbours of a bead that was dropped by mistake.
 /// \param beads     of one size; those that are not dropped remain
 /// \param others    discs that were dropped before; those with their centres outside the frame are visible
-/// too \param radius_px the size \returns the dropped ones, with Verdict::unexplained
+/// too
+/// \param radius_px the size
+/// \returns the dropped ones, with Verdict::unexplained
 std::vector<Detection> drop_outliers(const cv::Mat& grey, std::vector<Detection>& beads,
                                      const std::vector<Detection>& others, double radius_px);
 

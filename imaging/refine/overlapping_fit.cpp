@@ -45,7 +45,7 @@ class Layers {
         opaque_(image.opaque),
         unit_(image.unit),
         radius_(radius_px),
-        spread_(options.radius_spread),
+        spread_(kRadiusSpread),
         noise_(noise_of(image.darkness)),
         blur_(options.blur_px > 0 ? options.blur_px : blur_of(image.darkness)),
         blur_is_fixed_(options.blur_px > 0) {
@@ -463,7 +463,7 @@ Refined refine_overlapping(const Prepared& image, const std::vector<Proposal>& p
   const auto fit = [&] {
     for (result.sweeps = 0; result.sweeps < options.sweeps; ++result.sweeps) {
       throw_if_cancelled();
-      if (layers.sweep(false) < options.tolerance_px && result.sweeps > 0) break;
+      if (layers.sweep(false) < kRefineTolerance_px && result.sweeps > 0) break;
       layers.learn();
     }
   };

@@ -66,8 +66,6 @@ class BlurSchedule {
 /// Judges from one sweep after the other whether the next would still move the beads.
 class Convergence {
  public:
-  explicit Convergence(double tolerance_px) : tolerance_px_(tolerance_px) {}
-
   /// Takes the result of a sweep. The second sweep reads all rows, which alone moves each bead by about its
   /// uncertainty.
   void take(int sweep, const SweepResult& moved) {
@@ -78,7 +76,7 @@ class Convergence {
     const double next = shrinks_ * left_, next_most = shrinks_ * moved.most;
     reached_ = sweep >= kMinSweeps && !moved.damped && !moved.pruned && moved.blur < kBlurSettled &&
                next < kMaxRmsStep * moved.sigma &&
-               next_most < std::max(tolerance_px_, kMaxStep * moved.sigma);
+               next_most < std::max(kRefineTolerance_px, kMaxStep * moved.sigma);
   }
   [[nodiscard]] bool reached() const { return reached_; }
   /// Ratio of the next step to this one: about that of this step to the last.
@@ -87,7 +85,7 @@ class Convergence {
  private:
   static constexpr double kMaxRmsStep = 0.5;  // at convergence, in uncertainties of a position
   static constexpr double kMaxStep = 3;       // the same for the largest step
-  double tolerance_px_, before_ = HUGE_VAL, left_ = 0, shrinks_ = 1;
+  double before_ = HUGE_VAL, left_ = 0, shrinks_ = 1;
   bool reached_ = false;
 };
 
@@ -130,7 +128,7 @@ Refined fit_picture(const Prepared& image, const std::vector<Proposal>& proposal
   frame.expect_as_dark_as_seen();
   RingFit fit(frame);
   BlurSchedule blur(options);
-  Convergence convergence(options.tolerance_px);
+  Convergence convergence;
   LightSchedule light;
   int ripples_left = 2;  // so often a ripple of the light is corrected
   for (int sweep = 1; sweep <= most_sweeps; ++sweep) {

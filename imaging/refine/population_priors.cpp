@@ -29,10 +29,9 @@ struct Scatter {
 
 }  // namespace
 
-PopulationPriors::PopulationPriors(double radius_px, const RefineOptions& options)
-    : radius_spread_(options.radius_spread) {
-  radii_.push_back({radius_px, options.radius_spread * radius_px});
-  for (const double other : options.other_radii_px) radii_.push_back({other, options.radius_spread * other});
+PopulationPriors::PopulationPriors(double radius_px, const RefineOptions& options) {
+  radii_.push_back({radius_px, kRadiusSpread * radius_px});
+  for (const double other : options.other_radii_px) radii_.push_back({other, kRadiusSpread * other});
   for (const Prior& s : radii_) nominal_radii_.push_back(s.mean);
 }
 
@@ -60,7 +59,7 @@ void PopulationPriors::expect_alike(const std::vector<Detection>& beads) {
     radii[size_of(b.radius)].push_back(b.radius), darkness.push_back(b.darkness);
   for (std::size_t k = 0; k < radii_.size(); ++k)
     if (!radii[k].empty())
-      radii_[k] = {upper_median(std::move(radii[k])), radius_spread_ / 3 * nominal_radii_[k]};
+      radii_[k] = {upper_median(std::move(radii[k])), kRadiusSpread / 3 * nominal_radii_[k]};
   darkness_ = {upper_median(std::move(darkness)), 0.02};
 }
 

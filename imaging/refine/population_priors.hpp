@@ -45,7 +45,7 @@ class PopulationPriors {
   [[nodiscard]] const std::vector<Prior>& radii() const { return radii_; }
   [[nodiscard]] const Prior& darkness() const { return darkness_; }
 
-  /// Before the first sweep: the expected darkness of all beads.
+  /// Before the first sweep: the expected darkness of all beads, about 1 for opaque ones.
   void expect_darkness(double mean) { darkness_.mean = mean; }
   /// After the first sweep, in which every disc has a wide prior: narrows the priors, because most discs of a
   /// size are alike.
@@ -64,7 +64,6 @@ class PopulationPriors {
   std::vector<double> nominal_radii_;
   std::vector<Prior> radii_;
   Prior darkness_{1, 0.3};
-  double radius_spread_;  // relative, as given
 };
 
 }  // namespace twincell::imaging

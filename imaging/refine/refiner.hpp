@@ -17,18 +17,21 @@
 
 namespace twincell::imaging {
 
+/// A fit stops when no bead moves farther in a sweep, px.
+inline constexpr double kRefineTolerance_px = 2e-3;
+/// Prior: relative scatter of the radii about the given ones.
+inline constexpr double kRadiusSpread = 0.06;
+
 /// Options of the fit.
 struct RefineOptions {
   std::string method = "exact";  ///< one of refiner_names()
-  int sweeps = 30;               ///< largest number of sweeps, 1 .. 1000
-  double tolerance_px = 2e-3;    ///< the fit stops when no bead moves farther in a sweep, > 0
-  double ring_px =
-      0;  ///< half width of the ring, 1 .. 50; 0: three times the blur, at least 2.5, at most max(6, R)
-  double blur_px = 0;                  ///< edge blur s; 0: fitted
-  double radius_spread = 0.06;         ///< prior: relative scatter of the radii about the given one, > 0
+  int sweeps = 30;               ///< largest number of sweeps, 1 .. 100
+  /// Half width of the ring, 1 .. 50; 0: three times the blur, at least 2.5, at most max(6, R).
+  double ring_px = 0;
+  double blur_px = 0;                  ///< edge blur s, 0 .. 10; 0: fitted
   std::vector<double> other_radii_px;  ///< radii of discs of further sizes, with the same scatter
-  bool pale =
-      false;  ///< keep discs of less than 0.4 of the usual darkness that are otherwise as the others are
+  /// Keep discs of less than 0.4 of the usual darkness that are otherwise as the others are.
+  bool pale = false;
 };
 
 /// Result of a refinement.

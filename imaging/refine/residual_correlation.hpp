@@ -26,7 +26,8 @@ class RimHarmonics {
   static constexpr std::size_t kOrders = 2;           ///< m = 2, 3
   static constexpr std::size_t kWaves = 2 * kOrders;  ///< cos and sin of each
 
-  /// Adds a pixel. \param c, s cos phi and sin phi of its direction from the centre
+  /// Adds a pixel.
+  /// \param c, s cos phi and sin phi of its direction from the centre
   void add(double c, double s, double slope, double weight, double residual) {
     const double c2 = c * c - s * s, s2 = 2 * c * s;
     const std::array<double, kWaves> waves = {c2, s2, c * c2 - s * s2, s * c2 + c * s2};

@@ -24,13 +24,16 @@ using Normal = Eigen::Matrix<double, kFitted, kFitted>;  ///< order x, y, R, a
 using Step = Eigen::Matrix<double, kFitted, 1>;
 enum FittedRow : std::uint8_t { kX, kY, kR, kA };  ///< rows of a Normal and a Step
 
-/// The normal matrix of one disc. \param s sums over its ring
+/// The normal matrix of one disc.
+/// \param s sums over its ring
 Normal normal_of(const RingSums& s);
-/// The right side of the normal equations of one disc. \param s sums over its ring
+/// The right side of the normal equations of one disc.
+/// \param s sums over its ring
 Step right_side(const RingSums& s);
 
 /// Pairs of discs whose edges are less than `reach` apart, each once. Discs are sorted into cells, so the
 /// time is linear in their number.
+/// \param reach px, >= 0
 std::vector<std::array<std::int32_t, 2>> near_pairs(const std::vector<Disc>& discs, double reach);
 
 /// Two discs that share pixels, with the off-diagonal block that couples them.

@@ -442,6 +442,19 @@ class SettingsSearch {
 
 }  // namespace
 
+namespace {
+
+/// Share of the pixels that have the brightest grey level of a picture.
+double brightest_share(const cv::Mat& picture) {
+  double least = 0, most = 0;
+  cv::minMaxLoc(picture, &least, &most);
+  return least < most
+             ? static_cast<double>(cv::countNonZero(picture == most)) / static_cast<double>(picture.total())
+             : 0;
+}
+
+}  // namespace
+
 SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& given, int threads) {
   // A frame too small for a disc of the smallest radius contains no information on the size.
   if (given.diameter_px <= 0 && std::min(picture.cols, picture.rows) < 2 * kSmallestRadius) return {};
@@ -451,12 +464,18 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   search.propose_plain_discs();
   search.propose_other_models();
   SettingsChoice choice = search.judge();
-  if (given.diameter_px > 0 || model_of(given.refine) != DiscModel::plain) return choice;
+  const auto with_saturation = [&](SettingsChoice chosen) {
+    if (!chosen.tried.empty() && !chosen.tried.front().settings.bright)
+      chosen.saturated = brightest_share(picture);
+    return chosen;
+  };
+  if (given.diameter_px > 0 || model_of(given.refine) != DiscModel::plain)
+    return with_saturation(std::move(choice));
   choice = search.or_small_discs(search.with_further_sizes(std::move(choice)));
   if (choice.tried.empty()) return choice;
   choice = search.with_variants_of_winner(choice);
   choice.uncovered_lattice_px = search.uncovered_lattice_px(choice);
-  return choice;
+  return with_saturation(std::move(choice));
 }
 
 std::optional<FoundSettings> find_settings(const cv::Mat& picture, const LocatorOptions& given) {

@@ -23,8 +23,9 @@ struct TriedSettings {
   FoundSettings settings;
   double evidence = 0;    ///< of the picture for the discs located with them, nats (picture_evidence.hpp)
   std::size_t beads = 0;  ///< discs located with them
-  double rim_variation =
-      0;                   ///< of these discs (rim_variation.hpp); they are not round above kMaxRimVariation
+  double rim_px = 0;  ///< diameter of the rims of these discs; that of a profile may be another than searched
+  /// Variation of the rims of these discs (rim_variation.hpp); they are not round above kMaxRimVariation.
+  double rim_variation = 0;
   double rim_shift = 0;    ///< of these discs (rim_shift.hpp), in radii; not round above kMaxRimShift
   std::string not_chosen;  ///< why others with less evidence were chosen, in words; empty: they were not
 };
@@ -38,6 +39,9 @@ struct SettingsChoice {
   /// The lattice constant of a crystal that fills the picture, px, if the chosen discs cover little of it:
   /// the beads of the crystal are not among them. 0: none.
   double uncovered_lattice_px = 0;
+  /// Share of the pixels that have the brightest grey level of the picture, if the beads are dark. A camera
+  /// that its light does not saturate has few of them.
+  double saturated = 0;
 };
 
 }  // namespace twincell::imaging

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/median.hpp"
+#include "imaging/refine/profile_fit.hpp"
 
 namespace twincell::imaging {
 

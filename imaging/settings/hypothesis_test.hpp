@@ -10,7 +10,7 @@
 #include <opencv2/core.hpp>
 
 #include "imaging/locate/locator.hpp"
-#include "imaging/refine/profile_fit.hpp"
+#include "imaging/refine/disc_profile.hpp"
 
 namespace twincell::imaging {
 
@@ -52,6 +52,8 @@ struct ProfileTrial {
   /// Whether, in addition, the discs are dark enough for the plain-disc fit.
   [[nodiscard]] bool looks_plain() const;
 };
+/// Fits discs with a common profile, of the size of the hypothesis.
+/// \param options of the locator; their diameter and polarity are those of the hypothesis
 ProfileTrial try_profile(const cv::Mat& grey, LocatorOptions options, const Hypothesis& h);
 
 /// The region of a frame, at most `side` px wide and high, whose grey levels change most from pixel to pixel.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/in_parallel.hpp"
+#include "imaging/refine/profile_fit.hpp"
 
 namespace twincell::imaging {
 

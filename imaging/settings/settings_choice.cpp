@@ -61,6 +61,17 @@ bool finds_more_of_the_same(const TriedSettings& other, const TriedSettings& fir
              first.evidence * static_cast<double>(other.beads);
 }
 
+/// Whether the discs of `first` are parts of those of `other`, such as the reflections of steel balls: as
+/// many discs of the same polarity, and clearly smaller.
+bool are_parts(const TriedSettings& first, const TriedSettings& other) {
+  constexpr double kSmaller = 1.3, kAsMany = 0.05;
+  const double more =
+      static_cast<double>(other.beads) / static_cast<double>(std::max<std::size_t>(1, first.beads));
+  return other.settings.bright == first.settings.bright && std::abs(more - 1) < kAsMany &&
+         first.settings.other_diameters_px.empty() && other.settings.other_diameters_px.empty() &&
+         other.rim_px > kSmaller * first.rim_px;
+}
+
 /// The rejected candidates that are discs, of another size or outside the frame.
 std::vector<Detection> other_discs(const std::vector<Detection>& dropped) {
   constexpr double kGood = 0.8;  // least score
@@ -85,7 +96,7 @@ TriedSettings try_one(const ExaminedRegion& region, const LocatorOptions& given,
   for (const double d : options.other_diameters_px) radii.push_back(0.5 * d);
   const PictureEvidence evidence =
       picture_evidence(region.picture, beads, radii, region.neighbour_radius_px, walls);
-  TriedSettings tried{settings, evidence.total, beads.size()};
+  TriedSettings tried{settings, evidence.total, beads.size(), found.located.rim * settings.diameter_px};
   // A stated size is that of round objects. Rims of patterned discs vary with direction.
   if (given.diameter_px <= 0 && model_of(options.refine) != DiscModel::circle) {
     tried.rim_variation =
@@ -191,7 +202,8 @@ SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
       if (first->evidence > best->evidence - kDiscs * share)
         reason = is_overlapping(*best) ? "a further layer gains less than three discs"
                                        : "a further size gains less than three discs";
-    } else if (clearly * first->evidence > best->evidence && !finds_more_of_the_same(*best, *first)) {
+    } else if ((are_parts(*first, *best) ? kMinAdvantage : clearly) * first->evidence > best->evidence &&
+               !finds_more_of_the_same(*best, *first)) {
       reason =
           fmt::format("less than {:g} times the evidence of the preferred ones{}", clearly,
                       clearly > kMinAdvantage ? ", for the gaps of a crystal are as alike as its discs" : "");

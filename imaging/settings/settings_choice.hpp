@@ -12,7 +12,7 @@ namespace twincell::imaging {
 
 /// Ratio of evidence at which other settings replace the preferred ones.
 inline constexpr double kMinAdvantage = 1.25;
-/// The same in a crystal, whose gaps are as alike as its discs.
+/// The same in a crystal, whose gaps resemble each other as much as its discs do.
 inline constexpr double kClearlyInCrystal = 1.6;
 
 /// The part of a frame in which settings are tried.
@@ -62,14 +62,16 @@ SettingsChoice choose(std::vector<TriedSettings> tried, double clearly = kMinAdv
 SettingsChoice confirmed(const ExaminedRegion& region, const LocatorOptions& given,
                          std::vector<TriedSettings> tried);
 
-/// Whether the chosen settings won narrowly: the best settings with other discs (a diameter that differs by
-/// more than a tenth, except of as many discs by a common profile, which has no rim; another number of sizes;
-/// a number of discs that differs by more than a twentieth, unless they are fewer, of the same size and
-/// polarity and with less evidence) have at least 0.9 of their evidence. \returns their index in `tried`; 0:
-/// the win is clear, or there are none
+/// Whether the choice is narrow: the runner-up has at least 0.9 of the evidence of the chosen settings. The
+/// runner-up are the best settings that describe other discs, which differ by one of
+/// - the diameter, by more than a tenth, unless as many discs have a common profile, which has no rim;
+/// - the number of sizes;
+/// - the number of discs, by more than a twentieth, unless they are fewer, of the same size and polarity, and
+///   with less evidence.
+/// \returns the index of the runner-up in `tried`; 0: the choice is clear, or there is no runner-up
 std::size_t narrow_runner_up(const SettingsChoice& choice);
 
-/// The best settings with other discs, as above, whatever their evidence; 0: there are none.
+/// The index of the runner-up, whatever its evidence; 0: there is none.
 std::size_t runner_up(const SettingsChoice& choice);
 
 }  // namespace twincell::imaging

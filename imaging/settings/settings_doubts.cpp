@@ -29,6 +29,12 @@ std::vector<std::string> settings_doubts(const SettingsChoice& choice, const std
         "beads found cover little of it: compare the overlay of twincell locate --overlay with and without "
         "--diameter {0:.1f} --dark or --bright",
         choice.uncovered_lattice_px));
+  constexpr double kSaturated = 0.1;
+  if (choice.saturated > kSaturated)
+    doubts.push_back(
+        fmt::format("{:.0f} % of the pixels have the brightest grey level: the light saturates the camera, "
+                    "which moves rims and edges inwards; expose less",
+                    100 * choice.saturated));
   if (std::any_of(choice.tried.begin(), choice.tried.end(), [&](const TriedSettings& t) {
         return !is_round(t) && t.evidence > choice.tried.front().evidence;
       }))

@@ -22,11 +22,12 @@ struct FrameRange {
 };
 
 /// Reads "A:B" or "A:B:STEP": A is the first frame, from 0; B is the first one that is left out; both may be
-/// absent. \throws ConfigError naming the key for other text, a negative number, B <= A, or STEP < 1
+/// absent.
+/// \throws ConfigError naming the key for other text, a negative number, B <= A, or STEP < 1
 FrameRange read_frame_range(const std::string& text, const std::string& key);
 
-/// The chosen frames as a stack. Its next() \throws ConfigError with the number of frames if the range begins
-/// after the end of the stack
+/// The chosen frames as a stack. Its next()
+/// \throws ConfigError with the number of frames if the range begins after the end of the stack
 std::unique_ptr<FrameSource> chosen_frames(std::unique_ptr<FrameSource> frames, FrameRange range);
 
 }  // namespace twincell::imaging

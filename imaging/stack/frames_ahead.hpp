@@ -24,6 +24,8 @@ class FramesAhead {
     }
     return &waiting_[ahead];
   }
+  /// Reads the next frame.
+  /// \returns false at the end of the stack
   bool next(cv::Mat& frame) {
     if (waiting_.empty()) return frames_.next(frame);
     frame = waiting_.front();

@@ -34,8 +34,9 @@ class RepeatedFrames {
 };
 
 /// "16 of 96 frames equal the frame before them to the bit, the first of them frame 5: ...", without a full
-/// stop; empty if no frame repeats another. \param repeats as RepeatedFrames::repeats \param range the frames
-/// of the stack that they are
+/// stop; empty if no frame repeats another.
+/// \param repeats as RepeatedFrames::repeats
+/// \param range the frames of the stack that they are
 std::string repeats_in_words(std::span<const std::uint8_t> repeats, const FrameRange& range = {});
 
 }  // namespace twincell::imaging

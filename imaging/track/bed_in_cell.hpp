@@ -15,7 +15,8 @@ namespace twincell::imaging {
 /// Hands frames on to a writer and notes how close the beads come to the side walls and to the plate.
 class BedInCell : public TrajectorySink {
  public:
-  /// \param writer, info outlive this object \param height_px of the picture: a plate below it is not checked
+  /// \param writer, info outlive this object
+  /// \param height_px of the picture: a plate below it is not checked
   BedInCell(TrajectorySink& writer, const TrajectoryInfo& info, const CellDescription& cell, int height_px);
   void append(const Frame& frame) override;
   /// Observations that contradict the stated cell, as sentences: over the frames, the median gap at a side

@@ -16,7 +16,8 @@ struct EncodedFrame {
 /// The frame in grey levels of 8 bits: PNG up to 2^18 px, JPEG of quality 90 above. A frame with more than
 /// 1600 px on the longer side is reduced to that. The largest grey level of a frame with more bits becomes
 /// white.
-/// \pre the frame is not empty \throws RunError if it cannot be encoded
+/// \pre the frame is not empty
+/// \throws RunError if it cannot be encoded
 EncodedFrame encoded_frame(const cv::Mat& grey);
 
 }  // namespace twincell::imaging

@@ -332,9 +332,7 @@ LinkedDetections link_detections(const DetectionStore& located, LinkOptions link
   } catch (const ConfigError& e) {
     // Frames that are repeated may be the reason.
     if (repeats.empty()) throw;
-    std::string said = e.what();
-    while (said.ends_with('.')) said.pop_back();
-    throw ConfigError({}, said + "; " + repeats_in_words(repeats) + ".");
+    throw ConfigError({}, without_full_stop(e.what()) + "; " + repeats_in_words(repeats) + ".");
   }
 }
 

@@ -20,8 +20,8 @@ struct LocatedTable {
   DetectionStore frames;   ///< of all numbers from the first to the last; those without a row have no bead
   FrameRange range;        ///< their numbers
   double diameter_px = 0;  ///< of the beads, px
-  int width_px = 0,
-      height_px = 0;          ///< of the picture; if not stated, of the smallest that contains all beads
+  /// Size of the picture, px; if not stated, of the smallest that contains all beads.
+  int width_px = 0, height_px = 0;
   bool has_picture = false;   ///< its size is stated
   bool has_errors = false;    ///< the table has sigma_x and sigma_y
   std::string spacing_doubt;  ///< a sentence: beads overlap or are listed twice; otherwise empty
@@ -29,12 +29,12 @@ struct LocatedTable {
 
 /// A user's statements about a table.
 struct LocatedTableOptions {
-  std::map<std::string, std::string> columns =
-      {};                                  ///< column names that differ from the defaults, by quantity
+  /// Column names that differ from the defaults, by quantity.
+  std::map<std::string, std::string> columns = {};
   std::optional<double> diameter_px = {};  ///< of the beads; absent: the median of the table's sizes
-  std::optional<std::array<int, 2>> picture =
-      {};  ///< width and height of the frames, px; required by a cell with
-           ///< rotation or distortion, which are about their centre
+  /// Width and height of the frames, px; required by a cell with rotation or distortion, which are about
+  /// their centre.
+  std::optional<std::array<int, 2>> picture = {};
 };
 
 /// Whether the name of a stack is that of a table: a file .csv.
@@ -42,14 +42,16 @@ bool is_located_table(const std::filesystem::path& name);
 
 /// Reads one bead a row. Columns: `frame`, whole numbers from 0; `x` and `y`, px, y downwards, pixel centres
 /// at whole numbers; optional `radius` or `diameter`, px; `sigma_x` and `sigma_y`, standard errors, px;
-/// `tracer`, 1 or 0. Others are ignored. Rows may have any order. \param folder as link_detections \throws
-/// InputError naming the row for numbers out of range, more than 10^7 frames, beads outside the picture, or
-/// a table without a size if none is given; ConfigError for columns that are missing or unknown
+/// `tracer`, 1 or 0. Others are ignored. Rows may have any order.
+/// \param folder as link_detections
+/// \throws InputError naming the row for numbers out of range, more than 10^7 frames, beads outside the
+/// picture, or a table without a size if none is given; ConfigError for columns that are missing or unknown
 LocatedTable read_located(const Table& table, const LocatedTableOptions& options,
                           const std::filesystem::path& folder);
 
-/// Links located beads as track_stack links those of frames: without beads outside the cell, phases by beads
-/// alone. \throws InputError, ConfigError as track_stack
+/// Links the beads of a table, as track_stack links those of frames. Beads outside the cell are left out, and
+/// phases are found from the beads alone.
+/// \throws InputError, ConfigError as track_stack
 TrackedStack track_located(LocatedTable located, LinkOptions link, const CellDescription& cell,
                            const PhaseSource& source, const std::filesystem::path& folder,
                            Progress& progress = Progress::none());

@@ -28,18 +28,22 @@ struct LocatingRequest {
   std::string frames;             ///< "A:B" or "A:B:STEP"
 };
 
-/// The locator's options. \param scale_px bead diameter if none is requested; absent: determined from the
-/// frames \param bright polarity that the cell states; absent: unknown
+/// The locator's options.
+/// \param scale_px bead diameter if none is requested; absent: determined from the frames
+/// \param bright polarity that the cell states; absent: unknown
 /// \param refine refiner that the cell states, used if none is requested
 LocatorOptions locator_of(const LocatingRequest& request, std::optional<double> scale_px = {},
                           std::optional<bool> bright = {}, const std::optional<std::string>& refine = {});
-/// The part of the picture. \throws ConfigError if `roi` cannot be read, InputError if `mask` cannot
+/// The part of the picture.
+/// \throws ConfigError if `roi` cannot be read, InputError if `mask` cannot
 Region region_of(const LocatingRequest& request);
-/// The chosen frames. \throws ConfigError if the text cannot be read
+/// The chosen frames.
+/// \throws ConfigError if the text cannot be read
 FrameRange frames_of(const LocatingRequest& request);
-/// The chosen frames of an open stack, with flat field or background applied. \param stack name of the stack,
-/// which is read again for its own flat field; empty for frames in memory
-/// \param locator as locator_of returned it \throws InputError, ConfigError
+/// The chosen frames of an open stack, with flat field or background applied.
+/// \param stack name of the stack, which is read again for its own flat field; empty for frames in memory
+/// \param locator as locator_of returned it
+/// \throws InputError, ConfigError
 std::unique_ptr<FrameSource> prepare_frames(std::unique_ptr<FrameSource> frames, const std::string& stack,
                                             const LocatingRequest& request, const LocatorOptions& locator);
 /// An option of a request as the user would write it.

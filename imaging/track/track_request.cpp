@@ -24,40 +24,43 @@ PhaseMethod phase_method(const std::string& option) {
   if (const auto [last, error] = std::from_chars(option.data(), end, n); error == std::errc() && last == end)
     return PhaseMethod::fixed;
   throw ConfigError(
-      Where{.file = {}, .key = "phase-lock"},
+      Where{.file = {}, .key = "--phase-lock"},
       "'" + option +
           "' is neither a number of frames per cycle, 'found', 'none', nor a list of triggers (*.csv).");
 }
 
 }  // namespace
 
-PhaseSource phase_source(const PhaseRequest& o, CellDescription& cell, const std::string& cell_file) {
-  PhaseSource source{.method = phase_method(o.phase_lock), .triggers = {}, .drive_hz = o.drive_hz};
+StatedPhases stated_phases(const PhaseRequest& o, const CellDescription& cell, const std::string& cell_file) {
+  StatedPhases stated{
+      .source = {.method = phase_method(o.phase_lock), .triggers = {}, .drive_hz = o.drive_hz},
+      .lock = cell.phase_lock};
+  auto& [source, lock] = stated;
   const Where drive_hz{.file = {}, .key = "--drive-hz"};
   if (o.drive_hz && source.method != PhaseMethod::triggers)
     throw ConfigError(drive_hz,
                       fmt::format("is {:g}, but it is used only with a list of triggers (--phase-lock "
                                   "FILE.csv); the drive of the cell is set by drive.frequency_hz.",
                                   *o.drive_hz));
-  if (source.method == PhaseMethod::none) cell.phase_lock = {};
+  if (source.method == PhaseMethod::none) lock = {};
   if (source.method == PhaseMethod::fixed && !o.phase_lock.empty()) {
-    cell.phase_lock.frames_per_cycle = std::stoi(o.phase_lock);
-    if (cell.phase_lock.first_phase >= cell.phase_lock.frames_per_cycle) cell.phase_lock.first_phase = 0;
-    cell.phase_lock.check(Where{.file = {}, .key = "phase-lock"});
+    lock.frames_per_cycle = std::stoi(o.phase_lock);
+    if (lock.first_phase >= lock.frames_per_cycle) lock.first_phase = 0;
+    lock.check(Where{.file = {}, .key = "--phase-lock"});
   }
-  if (source.method != PhaseMethod::triggers) return source;
+  if (source.method != PhaseMethod::triggers) return stated;
   source.triggers = o.phase_lock;
   const auto drive = cell.drive();
   const auto t0 = cell.scale.t0_s();
-  if (!drive || !t0) return source;
+  if (!drive || !t0) return stated;
   constexpr double kSame = 1e-3;
-  const double stated = drive->omega / (2 * M_PI * *t0);
-  if (o.drive_hz && std::abs(*o.drive_hz / stated - 1) > kSame)
+  const double by_cell = drive->omega / (2 * M_PI * *t0);
+  if (o.drive_hz && std::abs(*o.drive_hz / by_cell - 1) > kSame)
     throw ConfigError(drive_hz,
                       fmt::format("is {:g}, but the drive in {} is {:.6g} Hz; correct one of the two.",
-                                  *o.drive_hz, cell_file, stated));
-  if (!source.drive_hz) source.drive_hz = stated;
-  return source;
+                                  *o.drive_hz, cell_file, by_cell));
+  if (!source.drive_hz) source.drive_hz = by_cell;
+  return stated;
 }
 
 CellDescription resolve_cell(const TrackRequest& o) {
@@ -92,7 +95,7 @@ CellDescription resolve_cell(const TrackRequest& o) {
                        .k_m = {},
                        .peak_velocity = {}};
   }
-  cell.phase_lock.check(Where{.file = {}, .key = "first-phase"});
+  cell.phase_lock.check(Where{.file = {}, .key = "--first-phase"});
   return cell;
 }
 

@@ -39,13 +39,20 @@ struct TrackRequest {
 /// \throws InputError, ConfigError as read_cell, and for contradictions
 CellDescription resolve_cell(const TrackRequest& request);
 
-/// Source of the phases according to `phase_lock`: N, found, none, or a list of triggers. N and none are
-/// stored in `cell`. \param cell_file for messages \throws ConfigError for another word, or a frequency that
-/// is not used or contradicts the cell
-PhaseSource phase_source(const PhaseRequest& request, CellDescription& cell, const std::string& cell_file);
+/// Where the phases come from, and the phase lock of the stack.
+struct StatedPhases {
+  PhaseSource source;
+  PhaseLock lock;
+};
+/// The phases according to PhaseRequest::phase_lock: N, found, none, or a list of triggers. N and none
+/// override the lock of the cell.
+/// \param cell_file for messages
+/// \throws ConfigError for another word, or a frequency that is not used or contradicts the cell
+StatedPhases stated_phases(const PhaseRequest& request, const CellDescription& cell,
+                           const std::string& cell_file);
 
-/// The phase lock of the chosen frames of a stack with the given lock. \throws ConfigError if the step does
-/// not divide the frames per cycle
+/// The phase lock of the chosen frames of a stack with the given lock.
+/// \throws ConfigError if the step does not divide the frames per cycle
 PhaseLock lock_of_chosen(PhaseLock lock, const FrameRange& range);
 
 }  // namespace twincell::imaging

@@ -25,8 +25,9 @@ struct TrackPlan {
   [[nodiscard]] std::string in_plate_note() const;
 };
 /// Plans the trajectory of a tracked stack: its metadata, the map from px to sigma, and the slots of the
-/// tracks. \param diameter_px located diameter, px \param shortest fewest frames of a track that gets a
-/// slot
+/// tracks.
+/// \param diameter_px located diameter, px
+/// \param shortest fewest frames of a track that gets a slot
 TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell, double diameter_px,
                           int shortest);
 

@@ -7,8 +7,9 @@ from . import _core
 from . import _results, _scenes, _tables  # noqa: F401  (they add methods to the classes of _core)
 from ._core import (
     Box, ConfigError, Drive, Error, InputError, Interrupted, Result, Results, RunError, Scene, Simulation, Trajectory,
-    Window, __version__, analyze, analyze_windows, bond_order, coordination, fit, hexatic_order, laws, neighbours, preset_names,
-    result_names, sweep, track, version, voronoi)
+    Window, __version__, analyze, analyze_windows, bond_order, coordination, fit, hexatic_order, laws, neighbours, number_of_neighbours,
+    preset_names, result_names, sweep, track, version, voronoi)
+from ._functions import name_functions as _name_functions
 from ._frames import Frames, open_frames
 from ._locating import locate
 from ._program import (
@@ -17,10 +18,13 @@ from ._program import (
     match, render, reproduce)
 from ._scenes import simulate
 
+_name_functions(globals())
+
 __all__ = [
     "Box", "ConfigError", "Drive", "Error", "Frames", "InputError", "Interrupted", "Result", "Results", "RunError",
     "Scene", "Simulation", "Trajectory", "Window", "__version__", "analyze", "analyze_windows", "bond_order", "calibrate_beads",
     "calibrate_camera", "calibrate_contacts_bounce", "calibrate_contacts_collisions", "calibrate_contacts_infer",
     "calibrate_contacts_numbers", "calibrate_plate", "calibrate_walls", "compare", "coordination", "draw", "export", "fit",
-    "hexatic_order", "import_", "laws", "locate", "match", "neighbours", "open_frames", "preset_names", "render", "reproduce",
+    "hexatic_order", "import_", "laws", "locate", "match", "neighbours",
+    "number_of_neighbours", "open_frames", "preset_names", "render", "reproduce",
     "result_names", "simulate", "sweep", "track", "version", "voronoi"]

@@ -18,7 +18,6 @@ from . import _core
 
 _PROGRESS = re.compile(r"^(.*): (\d+) %(?:, about .* left)?$")
 _CLASSES = {1: _core.RunError, 2: _core.ConfigError, 3: _core.InputError, 130: _core.Interrupted, 143: _core.Interrupted}
-_GATE = 4  # finished, but a quality gate failed: there is a document
 
 
 def _program():
@@ -62,15 +61,15 @@ def _in_file(value, folder):
         return value
     if value._file is not None:  # else the file was replaced since it was opened
         return str(value._file)
-    path = Path(folder) / f"memory-{len(list(Path(folder).iterdir()))}.h5"
+    before = len(list(Path(folder).glob("trajectory*")))
+    path = Path(folder) / (f"trajectory-{before + 1}.h5" if before else "trajectory.h5")
     value.write(path)
     return str(path)
 
 
 def _raise(code, sentence):
     made = _CLASSES.get(code, _core.Error)
-    # Options have their Python names.
-    error = made(re.sub(r"(?<![\w-])--([a-z][a-z0-9-]*)", lambda found: found[1].replace("-", "_"), sentence))
+    error = made(_core._with_python_names(sentence))
     error.exit_code = code
     raise error
 
@@ -80,11 +79,12 @@ def _run(verb, positional, options, callback):
     with tempfile.TemporaryDirectory() as folder:
         positional = [str(_in_file(word, folder)) for word in positional if word is not None]
         options = {name: _in_file(value, folder) for name, value in options.items()}
-        return _run_words([_program(), *verb.split(), *positional, *_words(options), "--json"], callback)
+        return _run_words([_program(), *verb.split(), *positional, *_words(options), "--json"], callback, folder)
 
 
-def _run_words(words, callback):
+def _run_words(words, callback, folder):
     lines = []
+    own = re.compile(re.escape(folder) + r"/([\w-]+)\.(?:h5|toml)")  # of the caller's objects, named by their kind
     with tempfile.TemporaryFile("w+") as result:  # a pipe that nobody reads would block the program
         often = {**os.environ, "TWINCELL_PROGRESS_S": "0"}
         process = subprocess.Popen(words, stdout=result, stderr=subprocess.PIPE, text=True, env=often)
@@ -92,7 +92,7 @@ def _run_words(words, callback):
             for line in process.stderr:
                 progress = _PROGRESS.match(line.strip())
                 if progress is None:
-                    lines.append(line.strip())
+                    lines.append(own.sub(r"\1", line.strip()))
                 elif callback is not None:
                     callback(int(progress.group(2)), 100)
             code = process.wait()
@@ -106,11 +106,12 @@ def _run_words(words, callback):
         text = result.read()
     if code < 0:
         _raise(128 - code, f"The program was stopped by signal {-code}.")
-    if code not in (0, _GATE) or not text.strip():
+    if code != 0 or not text.strip():
         _raise(code, lines[-1].removeprefix("twincell: ") if lines else f"The program ended with the code {code}.")
     for line in lines:
         if line:
-            warnings.warn(line.removeprefix("twincell: ").removeprefix("note: "), stacklevel=4)
+            sentence = line.removeprefix("twincell: ").removeprefix("note: ")
+            warnings.warn(_core._with_python_names(sentence), stacklevel=4)
     return json.loads(text)
 
 

@@ -51,6 +51,19 @@ def _to_dataframe(self):
     return pd.DataFrame(rows, index=self.keys())
 
 
+def _format(self, form: str) -> str:
+    if not form:
+        return str(self)
+    return format(self.value if isinstance(self.value, str) else float(self), form)
+
+
+def _get(self, name, default=None):
+    """The result of this name, or `default`."""
+    return self[name] if name in self else default
+
+
+_core.Result.__format__ = _format
+_core.Results.get = _get
 _core.Result._repr_html_ = lambda self: _table([self])
 _core.Result.__repr__ = _repr
 _core.Results._repr_html_ = lambda self: _table(self.values())

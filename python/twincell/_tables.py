@@ -45,6 +45,55 @@ def _to_dataframe(self):
     return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=["frame", "particle", "x", "y"])
 
 
+def _of_each(table, column, key, what):
+    """The numbers of a column, one for each value of `key`. Raises ConfigError where they differ."""
+    if column not in table:
+        return None
+    of_key = table.groupby(key)[column]
+    differs = of_key.nunique(dropna=False) > 1
+    if differs.any():
+        raise _core.ConfigError(f"{column}: differs among the rows of {what} {differs.index[differs][0]}.")
+    return of_key.first().to_numpy()
+
+
+def _from_dataframe(table, *, box=None, drive=None, phases_per_cycle=0, source="unknown", unwrap=True):
+    """The trajectory of a table in the columns of `to_dataframe`, whose inverse it is: frame, particle, x, y, ...
+
+    y is downwards, z of a three-dimensional table is the depth; lengths in bead diameters. Beads are numbered in the order
+    of `particle`, frames in that of `frame`; without a column step the step is `frame`. Further columns are left out. box,
+    drive, phases_per_cycle, source and unwrap as in `from_arrays`.
+    """
+    missing = [name for name in ("frame", "particle", "x", "y") if name not in table]
+    if missing:
+        raise _core.ConfigError(f"table: has no column {missing[0]}.")
+    if table[["frame", "particle"]].isna().any(axis=None):
+        raise _core.ConfigError("table: has a row without a frame or a particle; linked beads are needed.")
+    if table.duplicated(["frame", "particle"]).any():
+        raise _core.ConfigError("table: has a particle twice in a frame.")
+    frame, t = np.unique(table["frame"], return_inverse=True)
+    particle, i = np.unique(table["particle"], return_inverse=True)
+    deep = "z" in table
+
+    def vectors(prefix, sign):
+        names = [prefix + axis for axis in ("xzy" if deep else "xy")]
+        if not all(name in table for name in names):
+            return None
+        filled = np.full((len(frame), len(particle), len(names)), np.nan)
+        filled[t, i] = table[names].to_numpy(dtype=float)
+        filled[:, :, -1] = sign * filled[:, :, -1] + 0.0
+        return filled
+
+    numbers = {name: _of_each(table, name, "frame", "frame") for name in ("step", "time", "phase", "cycle")}
+    if numbers["step"] is None and np.array_equal(frame, np.floor(frame)):
+        numbers["step"] = frame
+    tracers = _of_each(table, "tracer", "particle", "particle")
+    return _core.Trajectory.from_arrays(
+        vectors("", -1), velocities=vectors("v", -1), position_sigma=vectors("sigma_", 1),
+        radii=_of_each(table, "radius", "particle", "particle"), masses=_of_each(table, "bead_mass", "particle", "particle"),
+        tracers=None if tracers is None else tracers.astype(float), box=box, drive=drive, phases_per_cycle=phases_per_cycle,
+        source=source, unwrap=unwrap, **numbers)
+
+
 def _to_mdanalysis(self):
     """The trajectory as an MDAnalysis Universe in memory, one atom per slot, lengths in bead diameters.
 
@@ -77,4 +126,5 @@ def _to_mdanalysis(self):
 
 
 _core.Trajectory.to_dataframe = _to_dataframe
+_core.Trajectory.from_dataframe = staticmethod(_from_dataframe)
 _core.Trajectory.to_mdanalysis = _to_mdanalysis

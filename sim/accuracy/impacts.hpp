@@ -13,18 +13,19 @@
 
 namespace twincell::sim {
 
-/// Initial data of an impact of two equal beads, or of a bead on the plate at rest, at first touch. Speeds in
-/// sqrt(g sigma).
+/// Initial data of an impact of two equal beads, or of a bead and the plate at rest, at first touch. Speeds
+/// in sqrt(g sigma).
 struct Impact {
   bool wall = false;
   double v_n = 1;  ///< > 0: normal speed of approach
   double v_t = 0;  ///< tangential velocity of the centres
   double rim = 0;  ///< R_i w_i + R_j w_j, counter-clockwise; at the plate, R w
-  /// Relative speed of the surfaces at first touch.
+  /// Relative speed of the surfaces at first touch, sqrt(g sigma).
   [[nodiscard]] double speed() const;
   /// An impact at an angle.
   /// \param degrees from the normal, without spin
-  /// \param speed of the centres \param rim as the member
+  /// \param speed of the centres
+  /// \param rim as the member
   static Impact at(double degrees, bool wall, double speed = 1, double rim = 0);
 };
 
@@ -40,8 +41,8 @@ struct Outcome {
 /// contact is overridden by `contact` (lines of [contact]).
 Scene impact_scene(const std::string& contact = "", int dimension = 2);
 
-/// The exact outcome of each impact between two usual beads of a scene, or with its floor, to 1e-9 of the
-/// speed (integrate_collision_with_memory(), or integrate_collision() for friction without history).
+/// The exact outcome of each impact between two beads of median radius of a scene, or with its floor, to 1e-9
+/// of the speed (integrate_collision_with_memory(), or integrate_collision() for friction without history).
 /// \throws RunError if beads do not part within 20 contact times, or if the laws cannot be integrated
 /// separately
 std::vector<Outcome> exact_outcomes(const std::vector<Impact>& impacts, const Scene& scene);
@@ -49,8 +50,9 @@ std::vector<Outcome> exact_outcomes(const std::vector<Impact>& impacts, const Sc
 std::vector<Outcome> exact_outcomes(const std::vector<Impact>& impacts, const Scene& scene,
                                     SlipReading reading);
 
-/// The outcomes with time steps, for each of `phases` entry phases (the positions within a step at which the
-/// contact begins). Only the integrator and n of `setting` are used. \return [impact][phase]
+/// The outcomes with time steps, for `phases` evenly spaced entry phases (the instant within a step at which
+/// the contact begins). Only the integrator and n of `setting` are used.
+/// \return [impact][phase]
 std::vector<std::vector<Outcome>> outcomes_by_steps(const std::vector<Impact>& impacts, Scene scene,
                                                     const StepSetting& setting, int phases);
 
@@ -60,8 +62,12 @@ struct ImpactErrors {
   PhaseSpread restitution, tangential, spin;
   double spin_change = 0;  ///< rms of R (w' - w) over the same speed: the scale of the spin error
 };
+/// Errors of the impacts with the integrator and n of `setting`, at `phases` entry phases.
+/// \param exact exact_outcomes() of the impacts in this scene
 ImpactErrors impact_errors(const std::vector<Impact>& impacts, const std::vector<Outcome>& exact,
                            const Scene& scene, const StepSetting& setting, int phases);
+/// The same; computes the exact outcomes.
+/// \throws RunError as exact_outcomes
 ImpactErrors impact_errors(const std::vector<Impact>& impacts, const Scene& scene, const StepSetting& setting,
                            int phases);
 

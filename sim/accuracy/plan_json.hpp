@@ -22,8 +22,10 @@ std::string plan_json(const Plan& plan);
 /// measurement ended early.
 std::string cost_json(const Scene& scene, const Cost& cost);
 
-/// The provenance of a run of a scene. \param provenance with command line and inputs
-/// \param threads asked for; 0: chosen \throws InputError if an input cannot be read
+/// The provenance of a run of a scene.
+/// \param provenance with command line and inputs
+/// \param threads asked for; 0: chosen
+/// \throws InputError if an input cannot be read
 std::string scene_provenance(Provenance provenance, const Scene& scene, const std::vector<Bead>& beads,
                              int threads);
 

@@ -21,12 +21,13 @@ struct StepError {
   std::optional<ImpactErrors> friction = {};
 };
 
-/// Simulates a collision of two usual beads of the scene, without gravity, at each of `phases` entry phases,
+/// Simulates a collision of two beads of median radius, without gravity, at each of `phases` entry phases,
 /// with the time step of the plan. They meet at twice the largest speed of the plate, or at the speed of a
 /// fall by sigma if that is larger, but never so fast that they overlap, or travel in a step, by more than
 /// half of the guard's bounds. The reference uses "split" and eight times as many steps, at least 2000 per
 /// contact; its own error is about 1e-8 at e = 0.9. Oblique impacts are compared with their exact outcome
-/// (exact_outcomes). \return nothing if the beads do not part, that is, with critical damping or more
+/// (exact_outcomes).
+/// \return nothing if the beads do not part, that is, with critical damping or more
 std::optional<StepError> step_error(const Scene& scene, const Plan& plan, int phases = 32);
 
 /// Adds the result of step_error() to the list of effects of the plan.

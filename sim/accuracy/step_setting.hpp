@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A setting of the time step, as a study of time steps compares them.
+/// The settings of a time step that studies of accuracy and cost vary.
 
 #include <string>
 

@@ -218,9 +218,9 @@ struct TimedSetting {
         run.kernel = make_solver(run.plan, {});  // without the contact memories of the last window
         run.system.step = w * period / kWindows;
         run.kernel->advance(run.system, steps / 2);
-        const double begun = cpu_seconds();
+        const double begun = thread_cpu_seconds();
         run.kernel->advance(run.system, steps);
-        seconds += cpu_seconds() - begun;
+        seconds += thread_cpu_seconds() - begun;
       }
     return seconds / (repeats * kWindows * static_cast<double>(steps) * run.system.dt);
   }
@@ -326,10 +326,10 @@ GasTemperature gas_temperature(const StepSetting& setting, const GasCase& gas, i
                            std::max(periods, kBlocks)));
   Simulation run(scene);
   VerticalTemperature frames(scene.phases);
-  const double begun = cpu_seconds();
+  const double begun = thread_cpu_seconds();
   run.run(frames, progress);
   GasTemperature t{.setting = setting, .gas = gas, .periods = static_cast<int>(frames.periods().size())};
-  t.seconds = (cpu_seconds() - begun) * t.periods / (t.periods + static_cast<double>(scene.discard));
+  t.seconds = (thread_cpu_seconds() - begun) * t.periods / (t.periods + static_cast<double>(scene.discard));
   const double scale = scene.drive.peak_velocity() * scene.drive.peak_velocity();
   std::array<double, kBlocks> block{};
   for (int b = 0; b < kBlocks; ++b) {

@@ -19,7 +19,9 @@ struct CollisionErrors {
   PhaseSpread restitution_pair, restitution_wall;
   PhaseSpread sticking_pair, sticking_wall;  ///< two beads; a bead and the plate
 
-  [[nodiscard]] double restitution() const;  ///< larger of the `largest` of pair and wall
+  /// Largest error of e: the larger of restitution_pair.largest and restitution_wall.largest.
+  [[nodiscard]] double restitution() const;
+  /// Largest error of v_t'/v_t: the larger of sticking_pair.largest and sticking_wall.largest.
   [[nodiscard]] double sticking() const;
 };
 /// Simulates oblique impacts at 45 degrees, one for each of `phases` evenly spaced entry phases. A pair
@@ -34,7 +36,8 @@ struct BedErrors {
   double overlap = 0;         ///< largest |delta k_n/(i m g) - 1| in a column of five; i: beads carried
 };
 /// Lets a crystal of 40 beads and a column of five come to rest with time steps and compares them with
-/// statics. \throws ConfigError for an integrator or n that a scene refuses
+/// statics.
+/// \throws ConfigError for an integrator or n that a scene refuses
 BedErrors bed_errors(const StepSetting& setting);
 
 /// A gas of the second paper.
@@ -101,7 +104,7 @@ StepSetting longest_study_step();
 /// (impacts_of_a_bed), each used at kBedPhases entry phases.
 std::vector<Impact> bed_impacts();
 inline constexpr int kBedPhases = 8;
-/// Scene for impacts with the contact of the first paper, scaled to another stiffness.
+/// Scene for impacts with the contact of the first paper, scaled to another stiffness k_n, m g/sigma.
 Scene scaled_impact_scene(double k_n);
 
 /// Accuracy and cost of each setting.
@@ -112,8 +115,9 @@ std::vector<WorkPrecision> work_precision(const std::vector<StepSetting>& settin
 /// time, cheapest first.
 std::vector<WorkPrecision> front(const std::vector<WorkPrecision>& all, double k_n);
 
-/// The cheapest setting of stiffness k_n whose largest error of e is at most `accuracy`. Every larger n of
-/// its integrator must pass too, so that a fortunate phase does not count. Absent if no setting passes.
+/// The cheapest setting of stiffness k_n whose largest error of e is at most `accuracy` (absolute). Every
+/// larger n of its integrator must pass too, so that a fortunate phase does not count. Absent if no setting
+/// passes.
 std::optional<WorkPrecision> cheapest(const std::vector<WorkPrecision>& all, double k_n, double accuracy);
 
 /// The cheapest setting that is at least as accurate as `reference`. It must not exceed the reference in the

@@ -20,13 +20,15 @@ struct CollisionForces {
   Tangent<V, kTurn> v_t, turning;  ///< tangential velocity; n x F_t (in 2D F_t)
   bool released = false;           ///< the law omits tension, and F_n would pull: there is no force
 
+  /// Scalar product of two vectors in D dimensions.
   static V dot(const V* a, const V* b) {
     V sum = a[D - 1] * b[D - 1];
     for (int k = D - 2; k >= 0; --k) sum = sum + a[k] * b[k];
     return sum;
   }
 
-  /// Computes the normal and the overlap. \param wall normal of the wall; null between beads
+  /// Computes the normal and the overlap.
+  /// \param wall normal of the wall; null between beads
   [[gnu::always_inline]] void look(V reach, const V* wall, const V* r) {
     if (wall != nullptr) {
       for (int k = 0; k < D; ++k) n[k] = wall[k];
@@ -64,9 +66,10 @@ struct CollisionForces {
       }
     }
   }
-  /// Computes the friction; call after approach(). \param pressed regime F_n > 0 \param slides regime in
-  /// which the Coulomb limit binds. The formula of a regime is also evaluated outside its range: |F_n| is F_n
-  /// or -F_n as `pressed` states, whatever the sign of F_n.
+  /// Computes the friction; call after approach().
+  /// \param pressed regime F_n > 0
+  /// \param slides regime in which the Coulomb limit binds. The formula of a regime is also evaluated outside
+  /// its range: |F_n| is F_n or -F_n as `pressed` states, whatever the sign of F_n.
   [[gnu::always_inline]] void friction(const V* c_t, bool pressed, bool slides) {
     released = OmitsTension<N> && !pressed;
     if constexpr (T::kActs) {
@@ -96,8 +99,8 @@ struct CollisionForces {
     const V slack = T::slack(c_t, norm(v_t), f_n);
     return select((pressed ? f_n : -f_n) < V(0.0), slack - V(2.0) * T::slack(c_t, V(0.0), f_n), slack);
   }
-  /// Computes the time derivatives of u and s from the forces. \param push additional accelerations; null if
-  /// there are none
+  /// Computes the time derivatives of u and s from the forces.
+  /// \param push additional accelerations; null if there are none
   [[gnu::always_inline]] void slopes(V inv_mass, V turn, const V* push, V* to) const {
     for (int k = 0; k < D; ++k) {
       V force = released ? V(0.0) : f_n * n[k];

@@ -42,6 +42,7 @@ struct Collocation {
   static constexpr std::size_t kWidths = 16;
   OscillatorResponse response[kWidths + 1];  ///< for omega h = kWidest k/kWidths
 
+  /// The coefficients, computed at the first call.
   static const Collocation& numbers();
 };
 
@@ -49,7 +50,8 @@ struct Collocation {
 /// plane.
 struct CollocationStart {
   const double *normal_law, *tangential_law;  ///< constants of the two laws
-  double reach, inv_mass, turn, h;
+  double reach, inv_mass;                     ///< R_i + R_j; 1/m_eff
+  double turn, h;                             ///< R^2/I summed over the beads; length of the step, t0
   double frequency, damping;  ///< of the oscillator that approximates the normal force, per mass
   double relaxation;          ///< rate at which friction slows the surfaces, for the initial guess
   const double* wall;         ///< normal of the wall; null between beads

@@ -138,13 +138,15 @@ struct CollocationOf {
     const V q = V(a.frequency * a.frequency) * square, x = V(a.relaxation) * time;
     const V cosine = q * fma(q, fma(q, V(-1.0 / 720), V(1.0 / 24)), V(-0.5));             // cos - 1
     const V sine = time * q * fma(q, fma(q, V(-1.0 / 5040), V(1.0 / 120)), V(-1.0 / 6));  // sin/omega - t
-    const V bent = square * fma(q, fma(q, V(1.0 / 720), V(-1.0 / 24)), V(0.5));           // (1 - cos)/omega^2
-    const V slowed = time * fma(x, fma(x, fma(x, V(-1.0 / 24), V(1.0 / 6)), V(-0.5)), V(1.0));
-    const V way = square * fma(x, fma(x, V(1.0 / 24), V(-1.0 / 6)), V(0.5));
-    const V more_u = fma(u_n, cosine, a_n * (time + sine - slowed));
-    const V more_r = fma(u_n, sine, a_n * (bent - way));
-    for (int k = 0; k < D; ++k) r[k] = fma(more_r, n0[k], fma(way, a0[k], r0[k]));
-    for (int k = 0; k < kSlopes; ++k) u[k] = fma(slowed, a0[k], u0[k]);
+    const V one_minus_cosine =
+        square * fma(q, fma(q, V(1.0 / 720), V(-1.0 / 24)), V(0.5));  // (1 - cos)/omega^2
+    // Integrals of exp(-lambda t): once for the velocity, twice for the position.
+    const V relaxed_time = time * fma(x, fma(x, fma(x, V(-1.0 / 24), V(1.0 / 6)), V(-0.5)), V(1.0));
+    const V relaxed_square = square * fma(x, fma(x, V(1.0 / 24), V(-1.0 / 6)), V(0.5));
+    const V more_u = fma(u_n, cosine, a_n * (time + sine - relaxed_time));
+    const V more_r = fma(u_n, sine, a_n * (one_minus_cosine - relaxed_square));
+    for (int k = 0; k < D; ++k) r[k] = fma(more_r, n0[k], fma(relaxed_square, a0[k], r0[k]));
+    for (int k = 0; k < kSlopes; ++k) u[k] = fma(relaxed_time, a0[k], u0[k]);
     for (int k = 0; k < D; ++k) u[k] = fma(more_u, n0[k], u[k]);
   }
   static void step(const CollocationStart& a, CollocationMotion& m) {
@@ -165,7 +167,7 @@ struct CollocationOf {
     }
     for (int k = 0; k < kSlopes; ++k) u0[k] = V(a.numbers[D + k]);
     guess(a, time, r0, u0, n0, r, u);
-    const V reach = V(a.reach), inv_mass = V(a.inv_mass), turn = V(a.turn);
+    const V reach = V(a.reach), inv_mass = V(a.inv_mass), inv_rim_mass = V(a.turn);
     V r_n = Forces::dot(n0, r0), u_n = Forces::dot(n0, u0);
     const V* along_wall = a.wall != nullptr ? wall : nullptr;
     Forces f;
@@ -175,17 +177,17 @@ struct CollocationOf {
       pass == 0 ? f.look(reach, along_wall, r) : f.look_again(reach, along_wall, r);
       f.approach(c_n, u, u + D);
       f.friction(c_t, a.pressed, a.slides);
-      f.slopes(inv_mass, turn, a.push != nullptr ? push : nullptr, slope);
+      f.slopes(inv_mass, inv_rim_mass, a.push != nullptr ? push : nullptr, slope);
       // The new accelerations change the motion, and the changed motion changes the normal force. `now`
-      // contains the acceleration -`lack` that the linear spring and dashpot exert at the present r and u.
-      // With their response to the new motion instead, the acceleration along n_0 is
-      // R (lack + now) - eta h R A now.
+      // contains the acceleration -`unapplied` that the linear spring and dashpot exert at the present r and
+      // u. With their response to the new motion instead, the acceleration along n_0 is R (unapplied + now) -
+      // eta h R A now.
       V now(0.0);
       alignas(64) double along[2][kStages];
       if (a.response != nullptr) {
         now = Forces::dot(n0, slope);
-        const V lack = stiffness * (Forces::dot(n0, r) - r_n) + damping * (Forces::dot(n0, u) - u_n);
-        (lack + now).store(along[0]);
+        const V unapplied = stiffness * (Forces::dot(n0, r) - r_n) + damping * (Forces::dot(n0, u) - u_n);
+        (unapplied + now).store(along[0]);
         (-(whole * damping * now)).store(along[1]);
         for (int k = 0; k < D; ++k) slope[k] = nfma(now, n0[k], slope[k]);
       }
@@ -196,9 +198,10 @@ struct CollocationOf {
       map<kSlopes>(numbers.once, m.slopes, next);
       if (a.response != nullptr) {
         const OscillatorResponse& by = *a.response;
-        const V place = map_two(by.twice, along[0], by.thrice, along[1]);
+        const V displacement = map_two(by.twice, along[0], by.thrice, along[1]);
         const V speed = map_two(by.once, along[0], by.twice, along[1]);
-        for (int k = 0; k < D; ++k) r[k] = fma(place, n0[k], r[k]), next[k] = fma(speed, n0[k], next[k]);
+        for (int k = 0; k < D; ++k)
+          r[k] = fma(displacement, n0[k], r[k]), next[k] = fma(speed, n0[k], next[k]);
       }
       for (int k = 0; k < D; ++k) r[k] = fma(square, r[k], r0[k]);
       for (int k = 0; k < kSlopes; ++k) next[k] = fma(whole, next[k], u0[k]);
@@ -208,9 +211,9 @@ struct CollocationOf {
       // Convergence: the ratio of the last two changes predicts the next change.
       const double most = change.largest();
       m.change = pass > 0 && most < before ? most * std::max(most / before, kMinContraction) : most;
-      const bool hopeless = pass >= kPatience && !(most < kProgress * before);
+      const bool stalled = pass >= kPatience && !(most < kProgress * before);
       before = most;
-      if (m.change <= a.enough || hopeless || pass + 1 == kMaxPasses) {
+      if (m.change <= a.enough || stalled || pass + 1 == kMaxPasses) {
         for (int k = 0; k < D; ++k) fma(now, n0[k], slope[k]).store(m.slopes[k]);
         f.overlap.store(m.overlap);
         m.deepest = f.overlap.largest();

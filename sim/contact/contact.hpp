@@ -111,9 +111,10 @@ struct ContactInterval {
 /// step, only the fraction since first touch counts, with the `mean` force over it. If the contact ends, the
 /// mean force over the fraction before last touch counts, and the dt/2 that the previous position has already
 /// contributed is subtracted.
-/// \param mean twice the mean force over the interval \param begun force at first touch or at the previous
-/// position
-/// \param ended force now or at last touch \param held force elsewhere
+/// \param mean twice the mean force over the interval
+/// \param begun force at first touch or at the previous position
+/// \param ended force now or at last touch
+/// \param held force elsewhere
 template <class V, class F>
 [[gnu::always_inline]] inline F over_jump(const ContactInterval<V>& p, const F& mean, const F& begun,
                                           const F& ended, const F& held) {
@@ -139,9 +140,10 @@ inline constexpr double kMoment = 1e-6;
 /// The Coulomb limit jumps where a contact begins, from 0 to mu |F_n(0+)|, and has a kink where F_n vanishes.
 /// A spring truncated there keeps its length for a long time, so it is truncated at that very instant and
 /// then integrated over the rest of the step. (Truncation at the end of the step was tried and dropped: the
-/// first position then set the friction of the whole impact, with an error of first order in dt, a fifth at
-/// n = 50.)
-/// \param v velocity in the middle of the step \param seen velocity at its end
+/// first position then set the friction of the whole impact, with an error of first order in dt, a fifth at n
+/// = 50.)
+/// \param v velocity in the middle of the step
+/// \param seen velocity at its end
 template <Velocity kVelocity, class V, class T, class X, class Force>
 [[gnu::always_inline]] inline T lasting(const T& v, const T& seen, V dt, const ContactInterval<V>& p, X& x,
                                         Force force) {
@@ -278,8 +280,8 @@ template <class V, int D>
 }
 
 /// Adds friction: rotates its spring into the present tangent plane, applies the law, adds force and torque.
-/// \param kept the law's memory \param middle tangential velocity in the middle of the previous step; both
-/// are updated
+/// \param kept the law's memory
+/// \param middle tangential velocity in the middle of the previous step; both are updated
 template <class Laws, Velocity kVelocity, class V, int D>
 [[gnu::always_inline]] inline void add_friction(const ContactKinematics<V, D>& a, const V* c, V dt,
                                                 const Touch<V>& t, V* kept, [[maybe_unused]] V* middle,
@@ -315,7 +317,8 @@ template <class Laws, Velocity kVelocity, class V, int D>
 }
 
 /// Adds rolling resistance to the relative angular velocity in the tangent plane. Its component along n is
-/// twisting, which no law resists. \param kept, middle as in `add_friction`
+/// twisting, which no law resists.
+/// \param kept, middle as in `add_friction`
 template <class Laws, Velocity kVelocity, class V, int D>
 [[gnu::always_inline]] inline void add_rolling(const ContactKinematics<V, D>& a, const V* c, V dt,
                                                const Touch<V>& t, V* kept, [[maybe_unused]] V* middle,

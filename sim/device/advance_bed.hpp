@@ -37,6 +37,7 @@ class BedKernel {
  public:
   BedKernel(const Space& space, const DeviceBed& bed) : space_(space), bed_(bed), report_(*bed_.report) {}
 
+  /// Advances the bed to its last stop and stores its state at every stop.
   void advance() {
     list_ = static_cast<int>(report_.list);
     builds_ = report_.builds;
@@ -91,7 +92,8 @@ class BedKernel {
     return aligned(bed_.pair_beads) + 2 * pair;
   }
 
-  /// Keeps the state for the transfer. \param failed see BedReport
+  /// Keeps the state for the transfer.
+  /// \param failed see BedReport
   void report(std::int64_t stop, std::int64_t steps, bool failed) {
     space_.once([&] {
       report_.steps = steps;
@@ -196,7 +198,8 @@ class BedKernel {
   }
 
   /// Lists the neighbours of a bead in the list that is not in use. Their number with a higher number than
-  /// the bead is left in first_pair. \returns whether the slots sufficed
+  /// the bead is left in first_pair.
+  /// \returns whether the slots sufficed
   bool list_neighbours_of(std::int32_t b) {
     std::int32_t old = 0, used = 0, higher = 0;
     const std::int32_t olds = bed_.neighbours[list_][b];
@@ -340,7 +343,8 @@ class BedKernel {
     return bed_.pair_constants + std::ptrdiff_t{kCount} * (bed_.kinds * bed_.kind[lower] + bed_.kind[higher]);
   }
 
-  /// Computes the contact of a pair and stores its force. \returns the overlap
+  /// Computes the contact of a pair and stores its force.
+  /// \returns the overlap
   double pair_contact(std::int32_t pair) {
     const std::int32_t lower = beads_of(pair)[0], higher = beads_of(pair)[1];
     const std::int32_t i = record(lower), j = record(higher), at = 0;
@@ -393,7 +397,8 @@ class BedKernel {
     return bed_.wall_constants + std::ptrdiff_t{kCount} * (bed_.kinds * w + bed_.kind[b]);
   }
 
-  /// Adds the forces of the walls to a bead. \returns the largest overlap
+  /// Adds the forces of the walls to a bead.
+  /// \returns the largest overlap
   double wall_contacts(std::int32_t b, const double* plate) {
     double overlap = 0;
     for (std::int32_t w = 0; w < bed_.walls; ++w)
@@ -401,7 +406,8 @@ class BedKernel {
     return overlap;
   }
 
-  /// Adds the force of a wall to bead b. \returns the overlap
+  /// Adds the force of a wall to bead b.
+  /// \returns the overlap
   double wall_contact(std::int32_t b, std::int32_t w, const double* plate) {
     const std::int32_t i = record(b);
     WallArgs g{};

@@ -48,6 +48,7 @@ class Batcher {
 /// The batchers of this process.
 /// \throws ConfigError if the program has no device code, or the machine no graphics card that it can use
 Batcher& gpu_batcher();
+/// The batcher of this process that runs beds on the processor.
 Batcher& host_batcher();
 
 }  // namespace twincell::sim

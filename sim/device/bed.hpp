@@ -87,9 +87,11 @@ struct DeviceBed {
 /// Bytes of a word of what is transferred.
 inline constexpr std::int64_t kWord = 8;
 
+/// Bytes of the inputs of a bed.
 inline std::size_t input_bytes(const DeviceBed& bed) {
   return static_cast<std::size_t>(kWord * bed.input_words);
 }
+/// Bytes of the states of a bed at all stops.
 inline std::size_t state_bytes(const DeviceBed& bed) {
   return static_cast<std::size_t>(kWord * bed.state_words * (bed.last_stop + 1));
 }

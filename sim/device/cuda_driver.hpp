@@ -45,7 +45,8 @@ struct CudaDriver {
   static constexpr unsigned kPortable = 1;      ///< of host memory: for all threads
   static constexpr unsigned kIndependent = 1;   ///< of a stream: it does not wait for copies of others
 
-  /// Loads the driver. \throws ConfigError if it is not on this machine, or too old
+  /// Loads the driver.
+  /// \throws ConfigError if it is not on this machine, or too old
   static CudaDriver load();
   /// The driver's words for a result.
   [[nodiscard]] std::string text_of(Result result) const;

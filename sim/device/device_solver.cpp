@@ -13,7 +13,6 @@
 
 #include "core/error.hpp"
 #include "sim/device/bed_memory.hpp"
-#include "sim/laws/cell_laws.hpp"
 #include "sim/stepping/contact_memories.hpp"
 #include "sim/stepping/packed_beads.hpp"
 
@@ -181,7 +180,7 @@ class DeviceSolver : public Solver {
           slots, most_neighbours(beads_.radius(b), smallest, skin, limits_.overlap, plan_.dimension, n));
     BedSizes sizes{.dimension = plan_.dimension, .beads = n, .walls = s.walls.size(), .kinds = model.size()};
     sizes.slots = slots;
-    sizes.constants = pair_constants(model[0], model[0]).size();
+    sizes.constants = pair_constants(plan_, beads_, model[0], model[0]).size();
     sizes.memory = remembered_;
     require_table(sizes);
     parts_ = place_bed(here_, sizes, nullptr);
@@ -198,10 +197,10 @@ class DeviceSolver : public Solver {
     std::copy(kind.begin(), kind.end(), here_.kind);
     double* at = here_.pair_constants;
     for (const Size a : model)
-      for (const Size b : model) at = append(at, pair_constants(a, b));
+      for (const Size b : model) at = append(at, pair_constants(plan_, beads_, a, b));
     at = here_.wall_constants;
     for (Size w = 0; w < s.walls.size(); ++w)
-      for (const Size a : model) at = append(at, wall_constants(w, a));
+      for (const Size a : model) at = append(at, wall_constants(plan_, beads_, w, a));
     const IntegrateArgs of_beads = beads_.integrate_args(s);
     for (Size b = 0; b < n; ++b) {
       const Size k = of_beads.inertia_step == 0 ? 0 : b;
@@ -216,14 +215,6 @@ class DeviceSolver : public Solver {
   }
   static double* append(double* at, const std::vector<double>& values) {
     return std::copy(values.begin(), values.end(), at);
-  }
-  [[nodiscard]] std::vector<double> pair_constants(Size a, Size b) const {
-    const double ra = beads_.radius(a), rb = beads_.radius(b);
-    return contact_constants(plan_.laws->bead, beads_.pair(a, b), ra + rb, 1 / ra, 1 / rb);
-  }
-  [[nodiscard]] std::vector<double> wall_constants(Size w, Size a) const {
-    const double r = beads_.radius(a);
-    return contact_constants(plan_.laws->walls[w], beads_.wall(a), r, 1 / r, 0);
   }
   /// Beads of many sizes take a table of the constants of each pair of sizes.
   static void require_table(const BedSizes& sizes) {

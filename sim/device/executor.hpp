@@ -18,10 +18,14 @@ namespace twincell::sim {
 class Executor {
  public:
   virtual ~Executor() = default;
-  /// Memory of the machine, aligned to 64 bytes. \throws Error if there is not enough
+  /// Memory of the machine, aligned to 64 bytes.
+  /// \throws Error if there is not enough
   [[nodiscard]] virtual std::byte* allocate(std::size_t bytes) = 0;
+  /// Returns memory of allocate().
   virtual void release(std::byte* memory) = 0;
+  /// Copies to device memory.
   virtual void write(std::byte* to, const void* from, std::size_t bytes) = 0;
+  /// Copies from device memory.
   virtual void read(void* to, const std::byte* from, std::size_t bytes) = 0;
   /// Number of threads that may be in advance() at once.
   [[nodiscard]] virtual int launches_at_once() const { return 1; }

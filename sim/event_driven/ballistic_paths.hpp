@@ -43,12 +43,14 @@ class BallisticPaths {
       line.a[static_cast<Eigen::Index>(k)] = a_[k][i], line.b[static_cast<Eigen::Index>(k)] = b_[k][i];
     return line;
   }
+  /// Replaces the path of bead i.
   void put(std::size_t i, const BallisticPath& line) {
     for (std::size_t k = 0; k < 3; ++k)
       a_[k][i] = line.a[static_cast<Eigen::Index>(k)], b_[k][i] = line.b[static_cast<Eigen::Index>(k)];
   }
   [[nodiscard]] double radius(std::size_t i) const { return radius_[i]; }
-  /// Time from which the path of a bead is valid: the first whole step after its present contact or cluster.
+  /// Time, t0, from which the path of a bead is valid: the first whole step after its present contact or
+  /// cluster.
   double& valid_from(std::size_t i) { return from_[i]; }
   [[nodiscard]] double valid_from(std::size_t i) const { return from_[i]; }
   /// Shift from r to its periodic image nearest the origin.
@@ -56,11 +58,12 @@ class BallisticPaths {
 
   /// The first touch of bead i with another bead if no path changes.
   struct Hit {
-    double time;           ///< infinite if there is no touch
+    double time;           ///< t0; infinite if there is no touch
     std::int32_t partner;  ///< -1 if there is no touch
-    double until;          ///< later, another periodic image may touch first: search again then
+    double until;          ///< after this time another periodic image may touch first; then search again
     bool overlap;          ///< another bead already overlaps, so free flight is impossible
   };
+  /// The first touch of bead i after the time `now`, t0.
   [[nodiscard]] Hit first_hit(std::size_t i, double now) const;
   /// Appends to `found` the beads that touch a body of this radius on this path between two times, if they
   /// follow their own paths. The interval must be short. If the body is itself one of the beads, that bead is

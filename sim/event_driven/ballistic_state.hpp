@@ -1,7 +1,8 @@
 #pragma once
 /// \file
 /// Ballistic state: the paths, spins and masses of all beads during event-driven motion, with the walls and
-/// gravity that they move in. Times count from the start of a period of the drive.
+/// gravity that they move in. Times are in t0 and count from the start of a period of the drive; lengths are
+/// in sigma, velocities in sqrt(g sigma).
 
 #include <array>
 #include <cstddef>
@@ -56,30 +57,33 @@ struct BeadState {
 /// Everything that determines the motion of the beads between contacts. It refers to the plan, which must
 /// outlive it.
 struct BallisticState {
-  /// All beads of a system, at a time in its period.
+  /// All beads of a system, at a time in its period, t0.
   BallisticState(const Plan& plan, const System& s, double time);
 
   /// From t on, bead i moves on the path of bead k of `s`.
   void set_path(std::size_t i, const System& s, std::size_t k, double t);
+  /// The path in free flight of a bead with this position and velocity at time t.
   [[nodiscard]] BallisticPath path_of(const Bead& b, double t) const {
     return BallisticPath::through(centre_of(b), Vec3(b.vx, b.vy, b.vz), t, gravity);
   }
-  /// Moves the origin of time.
+  /// Moves the origin of time to t = `by`, t0.
   void move_origin(double by);
 
-  /// Plate displacement and velocity.
+  /// Plate displacement, sigma.
   [[nodiscard]] Vec3 plate(double t) const;
+  /// Plate velocity, sqrt(g sigma).
   [[nodiscard]] Vec3 plate_velocity(double t) const;
   /// A point of the surface of a wall, and its velocity.
   [[nodiscard]] std::pair<Vec3, Vec3> surface(const Wall& wall, double t) const;
+  /// Whether bead i on its path overlaps a wall at time t.
   [[nodiscard]] bool in_wall(std::size_t i, const Wall& wall, double t) const;
-  /// Time at which a bead on its path first touches a wall, from a time on. Infinite if it never does, or not
-  /// before `needed`.
+  /// Time, t0, at which a bead on its path first touches a wall, from a time on. Infinite if it never does,
+  /// or not before `needed`.
   [[nodiscard]] double wall_touch(std::size_t i, const Wall& wall, double from, double needed) const;
   /// Whether a body may touch a wall during an interval, which must be short.
   [[nodiscard]] bool reaches(const PathInterval& p, const Wall& wall) const;
 
-  /// Distance of two bodies on their paths.
+  /// Distance of the centres of two bodies on their paths at time t, sigma.
   [[nodiscard]] double distance(const PathInterval& p, const PathInterval& q, double t) const;
   /// Whether two bodies on their paths may touch between two times.
   [[nodiscard]] bool come_near(const PathInterval& p, const PathInterval& q, double begin, double end) const;

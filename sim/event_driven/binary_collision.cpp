@@ -400,7 +400,7 @@ class OrbitPlane {
 /// Calls visit(normal, tangential) if a contact with these laws can be integrated separately.
 template <class Visit>
 bool visit_laws(const ContactLaws& laws, Visit visit) {
-  if (laws.rolling.index() != 0) return false;
+  if (resists_rolling(laws)) return false;
   return std::visit(
       [&](const auto& normal, const auto& tangential) {
         using N = std::decay_t<decltype(normal)>;

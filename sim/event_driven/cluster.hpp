@@ -31,6 +31,8 @@ struct ClusterState {
   System system;
   std::vector<ContactMemory> memories;
 };
+/// Advances a copy of a cluster by a number of steps from its start, without other beads.
+/// \param make_solver makes the solver for a system of the members
 ClusterState after(const Cluster& cluster, std::int64_t steps,
                    const std::function<std::unique_ptr<Solver>()>& make_solver);
 

@@ -45,7 +45,8 @@ struct CollisionEnd {
   Vec3 xi = Vec3::Zero();  ///< the tangential spring at the end, for laws with history
 };
 
-/// Shortest time scale of the contact force (t_c for a linear law).
+/// Shortest time scale of the contact force, t0 (t_c for a linear law).
+/// \param speed of the impact, sqrt(g sigma)
 double collision_time(const CollisionSetting& setting, double speed);
 
 /// Contact force on i, n x F_t (which gives the torque), and n.

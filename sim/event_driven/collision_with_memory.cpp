@@ -363,7 +363,7 @@ class CollisionWithMemory {
 
 template <class Visit>
 bool visit_history(const ContactLaws& laws, Visit visit) {
-  if (laws.rolling.index() != 0) return false;
+  if (resists_rolling(laws)) return false;
   return std::visit(
       [&](const auto& normal, const auto& tangential) {
         using N = std::decay_t<decltype(normal)>;

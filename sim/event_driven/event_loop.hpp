@@ -30,13 +30,15 @@ class EventLoop {
   using MakeSolver = std::function<std::unique_ptr<Solver>()>;
 
   /// The beads of a system at its present step, without events yet.
-  /// \param plan must outlive the loop \param few factory of the solver that advances a cluster
+  /// \param plan must outlive the loop
+  /// \param few factory of the solver that advances a cluster
   EventLoop(const Plan& plan, const GuardLimits& limits, const System& s, MakeSolver few);
 
-  /// Begins the contacts in progress and finds the first events. \returns false if three bodies meet
+  /// Begins the contacts in progress and finds the first events.
+  /// \returns false if three bodies meet
   bool begin(const std::vector<std::pair<std::int32_t, std::int32_t>>& touching);
-  /// Advances the beads to step `last` at most, or to the end of the period. \returns false if three bodies
-  /// meet at the present step of the system and time steps are needed
+  /// Advances the beads to step `last` at most, or to the end of the period.
+  /// \returns false if three bodies meet at the present step of the system and time steps are needed
   bool advance(System& s, std::int64_t last);
   /// Writes beads and contact forces at the present step of the system.
   void write(System& s);
@@ -46,6 +48,7 @@ class EventLoop {
   [[nodiscard]] Solver::Footprint footprint() const;
   /// Everything, beyond the beads, that the continuation of event-driven motion depends on.
   void save(ArchiveWriter& out) const;
+  /// Restores what save() stored.
   void load(ArchiveReader& in);
 
  private:

@@ -14,7 +14,7 @@ namespace twincell::sim {
 /// Next event of a bead: touch of another bead or a wall, a repeated search, or no event.
 struct Event {
   enum class Kind { touch, wall, look_again, none };
-  double time = HUGE_VAL;
+  double time = HUGE_VAL;  ///< t0
   Kind kind = Kind::none;
   std::int32_t partner = -1;  ///< the other bead of a touch, or -1 - w for wall w
 };
@@ -29,6 +29,7 @@ class EventQueue {
   }
   [[nodiscard]] std::size_t size() const { return times_.size(); }
   [[nodiscard]] Event operator[](std::size_t i) const { return {times_[i], kinds_[i], partners_[i]}; }
+  /// Replaces the event of bead i.
   void put(std::size_t i, const Event& e) {
     times_[i] = e.time, kinds_[i] = e.kind, partners_[i] = e.partner;
   }
@@ -50,7 +51,7 @@ class EventQueue {
       kinds_[k] = Event::Kind::look_again, partners_[k] = -1;
     }
   }
-  /// Moves the origin of time to t = `by`.
+  /// Moves the origin of time to t = `by`, t0.
   void set_back(double by) {
     for (double& t : times_) t -= by;
   }

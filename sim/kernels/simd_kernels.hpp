@@ -202,7 +202,7 @@ Deviation integrate(const IntegrateArgs& args) {
     const Row inv_m = Row::load(p.inv_mass + p.inertia_step * 4 * b);
     const double turn = p.turn[p.inertia_step * b];
     if constexpr (D == 2) {
-      // Velocities are the upper half of a record; accelerations are placed likewise.
+      // Velocities are the upper half of a record; so are accelerations.
       const Row a = fma(Row::load(force).swapped(), inv_m, gravity);
       const double spin_kick = -h * turn * force[2];
       Row v = Row::load(record);

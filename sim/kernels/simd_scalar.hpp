@@ -11,7 +11,8 @@ namespace twincell::sim {
 struct ScalarLanes {
   using V = double;
   static constexpr int kWidth = 1;
-  static constexpr int kBlock = 0;  ///< beads per block of integrate_blocks(); 0: no blocks
+  static constexpr int kBlock =
+      0;  ///< beads per block of integrate_blocks() (simd_highway.hpp); 0: no blocks
 
   /// Two consecutive numbers at an address that is a multiple of 16 bytes. A graphics card reads them at
   /// once.

@@ -8,8 +8,8 @@
 /// Convention (docs/conventions.md): n points from j to i; the overlap is delta = R_i + R_j - r > 0 in
 /// contact; v_n = v_ij . n < 0 during approach; in the plane t = (-n_z, n_x) and v_t = v_ij . t - (R_i w_i +
 /// R_j w_j). Forces act on i. All quantities are in reduced units. Formulas are templates on the number type
-/// (real.hpp) and, for friction and rolling, on the tangent plane (tangent.hpp), so one formula serves one
-/// contact or eight, in 2D and 3D.
+/// (scalar_arithmetic.hpp) and, for friction and rolling, on the tangent plane (tangent.hpp), so one formula
+/// serves one contact or eight, in 2D and 3D.
 
 #include <concepts>
 #include <string>
@@ -25,6 +25,7 @@ template <class Law>
 concept ContactLaw = requires(const Law law, const ContactTable& table, const PairScale& pair) {
   { Law::kWord } -> std::convertible_to<std::string_view>;
   { Law::kName } -> std::convertible_to<std::string_view>;
+  { Law::kHelp } -> std::convertible_to<std::string_view>;  // one clause, for `twincell keys`
   { Law::kConstants } -> std::convertible_to<int>;
   { Law::read(table) } -> std::same_as<Law>;
   { law.constants(pair)[0] } -> std::convertible_to<double>;

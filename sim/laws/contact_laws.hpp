@@ -13,6 +13,9 @@ struct ContactLaws {
   RollingAxis rolling;
 };
 
+/// Whether the rolling law of these contacts exerts a torque, that is, is not NoRolling.
+bool resists_rolling(const ContactLaws& laws);
+
 /// Whether these laws are a tangential spring with history, combined with a normal force without memory and
 /// without rolling resistance.
 bool remembers(const ContactLaws& laws);

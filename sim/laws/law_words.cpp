@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <iterator>
+#include <variant>
 
+#include "core/choice.hpp"
 #include "sim/laws/axes.hpp"
 
 namespace twincell::sim {
@@ -22,6 +24,13 @@ std::vector<std::string> words() {
   return all;
 }
 
+template <class Axis>
+std::string help() {
+  std::vector<Choice<std::monostate>> rows;
+  for_each_law(Axis{}, [&](const auto& law) { rows.push_back({{}, law.kWord, law.kHelp}); });
+  return help_of(rows);
+}
+
 }  // namespace
 
 std::vector<std::string> normal_words() {
@@ -32,6 +41,15 @@ std::vector<std::string> tangential_words() {
 }
 std::vector<std::string> rolling_words() {
   return words<RollingAxis>();
+}
+std::string normal_help() {
+  return help<NormalAxis>();
+}
+std::string tangential_help() {
+  return help<TangentialAxis>();
+}
+std::string rolling_help() {
+  return help<RollingAxis>();
 }
 bool has_history(const std::string& tangential) {
   bool history = false;

@@ -44,8 +44,8 @@ struct LinearCollision {
                                 : std::log((beta + w) / (beta - w)) / w;
     return {t, std::exp(-beta * t), damping_ratio()};
   }
-  /// Time that a step must resolve: t_c; with strong damping, the shorter of half an undamped period and the
-  /// decay time of the dashpot.
+  /// Time that a step must resolve, t0: t_c; with strong damping, the shorter of half an undamped period and
+  /// the decay time of the dashpot.
   [[nodiscard]] double shortest_time() const {
     const double swing = damping_ratio() < 1 ? contact_time() : std::numbers::pi / w0;
     return beta > 0 ? std::min(swing, 1 / beta) : swing;

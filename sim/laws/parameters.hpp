@@ -12,15 +12,19 @@
 
 namespace twincell::sim {
 
-/// Effective mass, effective radius and inverse tangential mass of a contact.
+/// Effective mass (m), effective radius (sigma) and inverse tangential mass (1/m) of a contact.
 struct PairScale {
   double m_eff;    ///< m_i m_j/(m_i + m_j); the bead's mass at a wall
   double r_eff;    ///< R_i R_j/(R_i + R_j); the bead's radius at a wall
   double inv_m_t;  ///< 1/m_t = 1/m_i + 1/m_j + R_i^2/I_i + R_j^2/I_j; at a wall, the terms of the bead only
 };
 
-/// Scale of a contact of two equal beads, and of a bead and a wall. `inertia_factor` is I/(m R^2).
+/// Scale of a contact of two equal beads.
+/// \param radius sigma
+/// \param mass m
+/// \param inertia_factor I/(m R^2)
 PairScale equal_beads(double radius, double mass, double inertia_factor);
+/// Scale of a contact of a bead and a wall; parameters as equal_beads.
 PairScale bead_and_wall(double radius, double mass, double inertia_factor);
 
 /// Mutually exclusive keys of the normal damping: at most one per table. A key of an inner table overrides
@@ -36,8 +40,8 @@ class ContactTable {
   ContactTable() = default;
   explicit ContactTable(std::vector<ConfigSection> innermost_first) : tables_(std::move(innermost_first)) {}
 
-  /// Returns the number at `key`, checked against the bounds. \throws ConfigError naming file, line, key,
-  /// value and bound
+  /// Returns the number at `key`, in its reduced unit, checked against the bounds.
+  /// \throws ConfigError naming file, line, key, value and bound
   [[nodiscard]] std::optional<double> number(const std::string& key,
                                              std::optional<double> lower = std::nullopt,
                                              std::optional<double> upper = std::nullopt,
@@ -46,6 +50,8 @@ class ContactTable {
   /// \throws ConfigError also if the key is absent
   [[nodiscard]] double required(const std::string& key, std::optional<double> lower = std::nullopt,
                                 std::optional<double> upper = std::nullopt, bool open_lower = false) const;
+  /// Returns the word at `key`.
+  /// \throws ConfigError if it is none of `words`
   [[nodiscard]] std::optional<std::string> word(const std::string& key,
                                                 const std::vector<std::string>& words) const;
   /// Returns the key that is set, of a group of mutually exclusive keys, in the innermost table that sets any

@@ -55,26 +55,4 @@ inline V norm(const Tangent<V, K>& t) {
   }
 }
 
-/// A vector truncated to a maximum length, and a mask of where it was truncated.
-template <class V, int K>
-struct Limited {
-  Tangent<V, K> value;
-  decltype(V() > V()) cut;
-};
-
-/// Truncates t to length `limit` >= 0 and keeps its direction (or sign). A zero vector stays zero.
-template <class V, int K>
-inline Limited<V, K> limited(const Tangent<V, K>& t, V limit) {
-  if constexpr (K == 1) {
-    const auto cut = abs(t.c[0]) > limit;
-    return {{{min(max(t.c[0], -limit), limit)}}, cut};
-  } else {
-    const V length = norm(t);
-    const auto cut = length > limit;
-    // Where t is truncated, length > limit >= 0. Elsewhere the quotient is not used, but it must be finite.
-    const V factor = select(cut, limit / max(length, V(kTiny)), V(1.0));
-    return {factor * t, cut};
-  }
-}
-
 }  // namespace twincell::sim

@@ -51,7 +51,8 @@ class CheckpointFolder : public TrajectorySink {
   void announce(TrajectoryInfo info) { info_ = std::move(info); }
   /// \throws NotSaved
   void append(const Frame& frame) override;
-  /// Finishes the segment and writes the state. \throws NotSaved
+  /// Finishes the segment and writes the state.
+  /// \throws NotSaved
   void save(RunState state);
   /// Appends all frames to `out`, including those since the last save, calls `finish`, and removes the
   /// folder.

@@ -19,7 +19,7 @@ namespace {
 /// Processor time of one thread does not depend on other programs. Several threads also wait for each other,
 /// which only the elapsed time includes.
 double now(std::size_t beads, int threads) {
-  if (threads_for(beads, threads) == 1) return cpu_seconds();
+  if (threads_for(beads, threads) == 1) return thread_cpu_seconds();
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 

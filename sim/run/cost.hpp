@@ -32,7 +32,8 @@ struct Cost {
 /// length that a run uses. If this is less than a period, the bed at rest is stepped until the floor has
 /// compressed it, for at most 8 `seconds`, and measured for another `seconds`; seconds_per_step is that time
 /// multiplied by driven_work(). Times are processor time with one thread, and elapsed time with several.
-/// \param threads as in make_solver \throws ConfigError, InputError, exceptions of `progress`
+/// \param threads as in make_solver
+/// \throws ConfigError, InputError, exceptions of `progress`
 Cost measure_cost(const Scene& scene, double seconds, int threads, Progress& progress = Progress::none());
 
 }  // namespace twincell::sim

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "sim/stepping/guard.hpp"
 #include "sim/stepping/solver.hpp"
 
 namespace twincell::sim {
@@ -16,7 +17,8 @@ enum class SolverKind {
   avx512,
   all_pairs,  ///< the oracle: tests every pair at every step
   /// The solver for beds on a graphics card (device/device_solver.hpp), which shares launches with the other
-  /// solvers of its kind in this process. \throws ConfigError if there is no card or no kernel for the plan
+  /// solvers of its kind in this process.
+  /// \throws ConfigError if there is no card or no kernel for the plan
   gpu,
   device_on_host,  ///< the same, with the kernel compiled for the processor
 };
@@ -26,7 +28,8 @@ enum class SolverKind {
 std::unique_ptr<Solver> make_solver(const Plan& plan, const GuardLimits& limits,
                                     SolverKind kind = SolverKind::best, int threads = 1);
 
-/// The graphics card that SolverKind::gpu uses. \throws ConfigError if there is none
+/// The graphics card that SolverKind::gpu uses.
+/// \throws ConfigError if there is none
 std::string graphics_card();
 
 /// Whether this processor supports a kind.

@@ -60,7 +60,7 @@ RunState placed(const Scene& scene, Progress& progress = Progress::none());
 /// steps.
 std::int64_t steps_per_call(std::size_t beads);
 
-/// Mean of m v^2/2 + I omega^2/2 over the beads; 0 without beads.
+/// Mean of m v^2/2 + I omega^2/2 over the beads, m g sigma; 0 without beads.
 double kinetic_energy_per_bead(const System& s);
 
 /// The step of a cycle that is nearest to `phase`, which is in cycles.
@@ -124,8 +124,8 @@ class Simulation {
   [[nodiscard]] std::int64_t frame_at(std::int64_t step) const;
   /// Samples between frames, an even number or 0.
   [[nodiscard]] std::int64_t samples_per_phase() const;
-  /// Whole steps from a frame to sample j = 0 .. samples_per_phase() after it. \param interval to the next
-  /// frame, steps
+  /// Whole steps from a frame to sample j = 0 .. samples_per_phase() after it.
+  /// \param interval to the next frame, steps
   [[nodiscard]] std::int64_t sample_at(std::int64_t j, std::int64_t interval) const;
   void take_sample(std::int64_t j, std::int64_t interval);
 

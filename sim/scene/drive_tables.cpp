@@ -8,7 +8,6 @@
 
 #include "core/constants.hpp"
 #include "core/error.hpp"
-#include "trajectory/recorded_motion.hpp"
 
 namespace twincell::sim {
 

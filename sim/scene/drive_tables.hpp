@@ -38,7 +38,8 @@ inline constexpr double kLargestChange = 100;
 /// Number of cycles before the recorded ones: the envelope, then `discard`.
 std::int64_t cycles_before(const Envelope& envelope, std::int64_t discard);
 
-/// Reads `[drive.horizontal]`; absent without one. \throws ConfigError for a number out of range
+/// Reads `[drive.horizontal]`; absent without one.
+/// \throws ConfigError for a number out of range
 std::optional<HorizontalMotion> read_horizontal(const ConfigSection& drive);
 
 }  // namespace twincell::sim

@@ -36,8 +36,10 @@ inline constexpr std::array kAllIntegrators = {
 
 inline constexpr const Integrator& kDefaultIntegrator = kAllIntegrators.front();
 
+/// The words of all integrators, for messages.
 std::vector<std::string> integrator_words();
-/// Integrator with this word. \throws ConfigError naming the valid words if there is none
+/// Integrator with this word.
+/// \throws ConfigError naming the valid words if there is none
 const Integrator& integrator_named(const std::string& word);
 
 /// time.stepping: how time is advanced.

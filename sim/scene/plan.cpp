@@ -36,7 +36,7 @@ std::size_t remembered_numbers(const Plan& plan) {
 std::string Plan::law_names() const {
   std::string name = fmt::format("{}D; normal: {}; tangential: {}", dimension, law_name(laws->bead.normal),
                                  law_name(laws->bead.tangential));
-  if (key.rolling > 0) name += "; rolling: " + law_name(laws->bead.rolling);
+  if (resists_rolling(laws->bead)) name += "; rolling: " + law_name(laws->bead.rolling);
   if (key.velocity == Velocity::full_step) name += "; predicted velocities";
   if (locate) name += "; steps split at entry and exit";
   return name;

@@ -8,7 +8,6 @@
 #include "core/error.hpp"
 #include "sim/laws/cell_laws.hpp"
 #include "sim/laws/law_words.hpp"
-#include "sim/scene/drive_tables.hpp"
 
 namespace twincell::sim {
 

@@ -12,8 +12,9 @@ namespace twincell::sim {
 
 /// Sets the bounds of overlap, displacement and force, the limits of the time step, and the step: the
 /// shortest limit divided by steps_per_contact, shortened so that each phase is a whole number of steps.
-/// Requires the laws and walls of the plan. \param beads as in make_plan.hpp \throws ConfigError for a step
-/// that is too short, too many steps, or a plate that moves too far in one
+/// Requires the laws and walls of the plan.
+/// \param beads as in make_plan.hpp
+/// \throws ConfigError for a step that is too short, too many steps, or a plate that moves too far in one
 void limit_step(const Scene& scene, const std::vector<Bead>& beads, Plan& plan);
 
 }  // namespace twincell::sim

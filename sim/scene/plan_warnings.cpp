@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "sim/laws/cell_laws.hpp"
+#include "sim/laws/rolling/none.hpp"
 #include "sim/laws/tangential/none.hpp"
 #include "sim/scene/recorded_drive.hpp"
 
@@ -83,7 +84,7 @@ std::vector<std::string> warnings_of(const Scene& s, const Plan& plan) {
   warn_of_harmonics(s.drive, warnings);
   warn_of_missing_friction(plan, warnings);
   warn_of_void_values(s, plan, warnings);
-  if (s.contact.rolling != "none" && !plan.rotation)
+  if (s.contact.rolling != NoRolling::kWord && !plan.rotation)
     warnings.emplace_back(
         "beads do not turn without friction (contact.mu = 0), so that contact.rolling has no effect.");
   warn_of_steps(s, plan, warnings);

@@ -16,7 +16,8 @@ namespace twincell::sim {
 /// \param assignments "section.key=value", which override everything else
 /// \throws InputError if the file is missing; ConfigError naming file, line, key, value and bound
 Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& assignments = {});
-/// Reads a scene from text. \param folder base of a relative start.from; empty: the working directory
+/// Reads a scene from text.
+/// \param folder base of a relative start.from; empty: the working directory
 Scene read_scene_text(const std::string& text, const std::string& name,
                       const std::vector<std::string>& assignments = {},
                       const std::filesystem::path& folder = {});

@@ -15,7 +15,6 @@
 #include "sim/laws/tangential/none.hpp"
 #include "sim/scene/drive_tables.hpp"
 #include "trajectory/recorded_motion.hpp"
-#include "trajectory/unit_keys.hpp"
 
 namespace twincell::sim {
 

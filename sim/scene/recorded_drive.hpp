@@ -41,8 +41,8 @@ double share_of_sine(const Drive& drive);
 void require_record_lasts(const Drive& drive, std::int64_t cycles, const Where& where);
 
 /// What `explain` says about a drive that is not a sine: extremes, for a record its length and the share of
-/// its sine, the end of a ramp, the strength of a horizontal motion. Empty for a sine. \param gravity
-/// magnitude of g; 0: none
+/// its sine, the end of a ramp, the strength of a horizontal motion. Empty for a sine.
+/// \param gravity magnitude of g; 0: none
 std::string beyond_the_sine(const Drive& drive, double gravity);
 
 /// Doubts about the record of a drive, if it has one: cut off by the instrument, of a strength or a mean that

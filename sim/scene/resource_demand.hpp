@@ -25,14 +25,15 @@ struct ResourceDemand {
 /// spin.
 ResourceDemand resource_demand(const Scene& scene, const Plan& plan, std::size_t beads);
 
-/// Checks that a run fits into memory. \param available bytes
+/// Checks that a run fits into memory.
+/// \param available bytes
 /// \throws ConfigError naming the key that sets the number of beads, the bytes needed, and the bytes
 /// available
 void require_memory(const Scene& scene, const Plan& plan, std::size_t beads,
                     double available = memory_available());
 
 /// Checks that the frames fit on the disk of the output.
-/// \throws ConfigError likewise, naming time.cycles
+/// \throws ConfigError naming time.cycles
 void require_disk(const Scene& scene, const Plan& plan, std::size_t beads,
                   const std::filesystem::path& output);
 

@@ -174,8 +174,8 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
 };
 
 /// Where a run of the scene with this number of beads stands in the phase diagram: N_l sigma = N sigma/L_x,
-/// Gamma = A omega^2/g (absent without gravity), and the word of the start. \param beads absent: N_l is
-/// absent
+/// Gamma = A omega^2/g (absent without gravity), and the word of the start.
+/// \param beads absent: N_l is absent
 RunConditions conditions_of(const Scene& scene, std::optional<std::size_t> beads);
 
 }  // namespace twincell::sim

@@ -71,13 +71,13 @@ void add_cell(Rows& rows) {
       {"cell.bottom_motion", "", "\"move\"", "\"rest\"",
        "\"move\": the wall moves with the plate, as the walls of a shaken cell do; \"rest\": the wall is at "
        "rest, which is a different experiment"},
-      {"cell.side_walls", "", "\"move\"", "\"rest\"", "likewise for the side walls"},
-      {"cell.plates_motion", "", "\"move\"", "\"rest\"", "likewise for front and back", kSpace},
+      {"cell.side_walls", "", "\"move\"", "\"rest\"", "the same for the side walls"},
+      {"cell.plates_motion", "", "\"move\"", "\"rest\"", "the same for front and back", kSpace},
       {"cell.lid_motion",
        "",
        "\"move\"",
        "\"rest\"",
-       "likewise for the lid",
+       "the same for the lid",
        {"cell.lid=wall", "cell.height=20.0"}},
       {"cell.side_tilt", "degrees", "0", "[0.2, -0.1]",
        "angle by which the side walls lean outward about their lower ends; one number, or [left, right]"},
@@ -125,7 +125,7 @@ void add_beads(Rows& rows) {
              "16.0");
   std::vector<std::string> space = radius;
   space.insert(space.end(), kSpace.begin(), kSpace.end());
-  add_length(rows, {"beads.intruder.y", "σ", middle, "2.4", "likewise; 3D only", space}, "4.8");
+  add_length(rows, {"beads.intruder.y", "σ", middle, "2.4", "the same along y; 3D only", space}, "4.8");
   add_length(rows,
              {"beads.intruder.z",
               "σ",
@@ -144,30 +144,15 @@ std::string law_clause(const std::string& key) {
 }
 
 void add_contact(Rows& rows) {
-  rows.push_back({"contact.normal",
-                  "",
-                  "\"linear\"",
-                  "\"hertz\"",
-                  "linear: spring and dashpot, which may pull at the end of a contact, as in both papers; "
-                  "linear-no-tension: never pulls; hertz: viscoelastic spheres; "
-                  "velocity-dependent-restitution: linear, e decreases with the impact speed; cohesive: "
-                  "linear, with a constant attraction while the surfaces touch",
-                  {"contact.youngs_modulus=1e7"}});
-  rows.push_back({"contact.tangential", "", "\"spring\"", "\"dashpot\"",
-                  "dashpot: dashpot with Coulomb slider (second paper); spring: spring with history, dashpot "
-                  "and Coulomb limit (first paper), at the limit the spring is shortened so that spring and "
-                  "dashpot together give exactly the limit; spring-limited: the limit applies to the spring "
-                  "and the dashpot is dropped; force-clipped: the limit applies to the force and the spring "
-                  "continues to stretch; mindlin: no dashpot, stiffness from the overlap (Hertz–Mindlin), "
-                  "without memory of the normal load"});
   rows.push_back(
-      {"contact.rolling",
-       "",
-       "\"none\"",
-       "\"spring\"",
-       "spring: torsional spring, dashpot and limit; twisting about the normal is not resisted; not with "
-       "tangential = \"none\"",
-       {"contact.k_r=1e3", "contact.mu_r=0.1"}});
+      {"contact.normal", "", "\"linear\"", "\"hertz\"", normal_help(), {"contact.youngs_modulus=1e7"}});
+  rows.push_back({"contact.tangential", "", "\"spring\"", "\"dashpot\"", tangential_help()});
+  rows.push_back({"contact.rolling",
+                  "",
+                  "\"none\"",
+                  "\"spring\"",
+                  rolling_help() + "; tangential \"none\" allows only rolling \"none\"",
+                  {"contact.k_r=1e3", "contact.mu_r=0.1"}});
   rows.push_back({"contact.overlap_bound", "bead diameter", "0.1", "0.05",
                   "deepest overlap that does not stop the run, in diameters of the median bead"});
   const std::vector<std::string> hertz = {"contact.normal=hertz"},

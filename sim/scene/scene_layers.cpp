@@ -7,7 +7,6 @@
 #include <map>
 #include <string>
 
-#include "sim/scene/drive_tables.hpp"
 #include "sim/scene/scene.hpp"
 #include "trajectory/unit_keys.hpp"
 

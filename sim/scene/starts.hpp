@@ -2,9 +2,9 @@
 /// \file
 /// The kinds of start: one table that the scene reader, the plan, `simulate`, `explain` and the help share.
 ///
-/// To add a start: its function in a file sim/start/start_NAME.cpp with a test, and here its enumerator, the
-/// declaration of the function, and one row of the table. `twincell keys scene` prints its line of
-/// help.
+/// To add a start: its function in a file of sim/start/ (start_lattice.cpp, start_random.cpp and
+/// start_files.cpp hold the present ones) with a test, and here its enumerator, the declaration of the
+/// function, and one row of the table. `twincell keys scene` prints its line of help.
 
 #include <array>
 #include <string_view>
@@ -32,27 +32,42 @@ struct StartRow {
   StartKind value;
   std::string_view word;  ///< start.kind
   std::string_view help;
-  bool from_file;   ///< the beads are those of start.from; start.in_motion can keep their motion
-  bool has_frames;  ///< the file has several frames; start.frame selects one
-  bool draws;  ///< positions are drawn with start.seed, and velocities with start.velocity_scale, in a column
-               ///< of start.fraction
-  bool sets_radii;  ///< the file sets the radii, so that beads.spread cannot
+  bool from_file = false;   ///< the beads are those of start.from; start.in_motion can keep their motion
+  bool has_frames = false;  ///< the file has several frames; start.frame selects one
+  /// Positions are drawn with start.seed, and velocities with start.velocity_scale, in a column of
+  /// start.fraction.
+  bool draws = false;
+  bool sets_radii = false;  ///< the file sets the radii, so that beads.spread cannot
   Start (*make)(const Scene& scene, Progress& progress);
 };
 
 /// All kinds of start. The first is the default.
 inline constexpr std::array kStarts = {
-    StartRow{StartKind::crystal_a, "crystal_a",
-             "close-packed rows (3D: layers of the hexagonal stack) parallel to the plate", false, false,
-             false, false, crystal_a},
-    StartRow{StartKind::crystal_b, "crystal_b",
-             "close-packed rows (3D: layers of the hexagonal stack) parallel to the side walls", false, false,
-             false, false, crystal_b},
-    StartRow{StartKind::random, "random", "random positions and velocities, from which the beads fall", false,
-             false, true, false, random_deposit},
-    StartRow{StartKind::trajectory, "trajectory", "a frame of a trajectory file", true, true, false, false,
-             from_trajectory},
-    StartRow{StartKind::table, "table", "the beads of a CSV file", true, false, false, true, from_table}};
+    StartRow{.value = StartKind::crystal_a,
+             .word = "crystal_a",
+             .help = "close-packed rows (3D: layers of the hexagonal stack) parallel to the plate",
+             .make = crystal_a},
+    StartRow{.value = StartKind::crystal_b,
+             .word = "crystal_b",
+             .help = "close-packed rows (3D: layers of the hexagonal stack) parallel to the side walls",
+             .make = crystal_b},
+    StartRow{.value = StartKind::random,
+             .word = "random",
+             .help = "random positions and velocities, from which the beads fall",
+             .draws = true,
+             .make = random_deposit},
+    StartRow{.value = StartKind::trajectory,
+             .word = "trajectory",
+             .help = "a frame of a trajectory file",
+             .from_file = true,
+             .has_frames = true,
+             .make = from_trajectory},
+    StartRow{.value = StartKind::table,
+             .word = "table",
+             .help = "the beads of a CSV file",
+             .from_file = true,
+             .sets_radii = true,
+             .make = from_table}};
 
 /// The row of a kind of start.
 constexpr const StartRow& start_row(StartKind kind) {

@@ -21,7 +21,8 @@ class Voids {
   Voids(Config& config, std::vector<std::string> lower, std::vector<VoidKey>& told)
       : config_(config), lower_(std::move(lower)), told_(told) {}
 
-  /// Refuses keys of something that the scene does not have. \param complaint a sentence
+  /// Refuses keys of something that the scene does not have.
+  /// \param complaint a sentence
   void refuse(const ConfigSection& s, const std::vector<std::string>& keys, const std::string& complaint) {
     std::optional<Where> first;
     for (const auto& key : keys) {

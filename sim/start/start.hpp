@@ -31,7 +31,7 @@ class NoRoom : public ConfigError {
   using ConfigError::ConfigError;
 };
 
-/// Radii of the beads, drawn with the seed of the scene; without a size spread all are equal.
+/// Radii of n beads, sigma, drawn with the seed of the scene; without a size spread all are equal.
 std::vector<double> draw_radii(const Scene& scene, std::size_t n);
 
 /// Whether another start.seed gives another run: random positions, radii with a spread, or a perturbation. A

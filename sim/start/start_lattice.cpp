@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.hpp"
 #include "sim/start/start.hpp"
 #include "sim/start/start_parts.hpp"
 #include "sim/system/cell_grid.hpp"

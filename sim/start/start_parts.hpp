@@ -19,7 +19,7 @@ inline constexpr double kRowSpacing = 0.86602540378443865;    ///< sqrt(3)/2: be
 inline constexpr double kLayerSpacing = 0.81649658092772603;  ///< sqrt(2/3): between layers
 inline constexpr double kLayerShift = 0.28867513459481288;    ///< 1/sqrt(12): from a row to a hollow
 
-/// A bead at rest.
+/// A bead at rest with its centre at r (radius and r in sigma, mass in m).
 Bead bead_at(const Scene& scene, double radius, double mass, const Vec3& r);
 /// A bead at rest, of the material of the scene.
 Bead bead_at(const Scene& scene, double radius, const Vec3& r);
@@ -37,14 +37,16 @@ double uniform(std::mt19937_64& engine);
 
 /// Depth of a bead in the wall that it overlaps most; if negative, minus the distance to the nearest wall.
 struct WallOverlap {
-  double depth = -HUGE_VAL;
+  double depth = -HUGE_VAL;  ///< sigma
   const Wall* wall = nullptr;
 };
+/// The wall that a bead with centre r overlaps most, sigma.
 WallOverlap deepest_wall(const std::vector<Wall>& walls, const Vec3& r, double radius);
 
-/// Largest height that beads may reach: the lid, or the period in z; infinite without either.
+/// Largest height that beads may reach, sigma: the lid, or the period in z; infinite without either.
 double ceiling_of(const Scene& scene);
-/// The plane y of the only row, if a lattice of constant d has room for just one row; otherwise nothing.
+/// The plane y of the only row, sigma, if a lattice of constant d has room for just one row; otherwise
+/// nothing.
 std::optional<double> only_row(const Scene& scene, double d);
 /// The cell in words, with its finite dimensions: "a cell 20 wide, 5 deep, 10 high".
 std::string describe_cell(const Scene& scene);

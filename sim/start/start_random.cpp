@@ -103,7 +103,7 @@ Start random_deposit(const Scene& scene, Progress& progress) {
     return true;
   };
   // The first few beads may lie so that the last find no room. In a small cell this happens to one seed in a
-  // hundred, so it begins anew; a large one fails only if it is too small for any order.
+  // hundred, so it starts over; a large one fails only if it is too small for any order.
   constexpr std::size_t kMaxRetriedBeads = 1000;
   constexpr int kAttempts = 10;
   for (int attempt = 0; attempt < (n <= kMaxRetriedBeads ? kAttempts : 1); ++attempt)

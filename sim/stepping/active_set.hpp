@@ -25,6 +25,7 @@ class ActiveSet {
     const BeadRange* first;
     std::size_t count;
   };
+  /// The active beads of chunk `chunk` of the inner list, as ranges of places.
   [[nodiscard]] Runs in_chunk(std::size_t chunk) const {
     const std::size_t begin = chunk == 0 ? 0 : chunk_end_[chunk - 1];
     return {active_.data() + begin, chunk_end_[chunk] - begin};
@@ -32,6 +33,8 @@ class ActiveSet {
   /// Registers a step of the active beads.
   void add_step() { ++behind_; }
   /// Advances the inactive beads to the present step.
+  /// \param dt t0
+  /// \param gravity components, g
   void advance_inactive(const Kernels& kernels, double* records, double dt, const double* gravity);
   /// Number of active beads.
   [[nodiscard]] std::int64_t size() const { return size_; }

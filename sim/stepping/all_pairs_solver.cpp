@@ -10,7 +10,6 @@
 #include <numeric>
 
 #include "sim/kernels/subnormals.hpp"
-#include "sim/laws/cell_laws.hpp"
 #include "sim/stepping/contact_memories.hpp"
 #include "sim/stepping/list_solver.hpp"
 #include "sim/stepping/packed_beads.hpp"
@@ -128,18 +127,16 @@ class AllPairsSolver : public Solver {
     for (Size i = 0; i < n; ++i)
       for (Size j = i + 1; j < n; ++j, ++k) {
         pairs_.i[k] = record(i), pairs_.j[k] = record(j);
-        const double ra = beads_.radius(i), rb = beads_.radius(j);
         put(pairs_, k, {static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)},
-            contact_constants(plan_.laws->bead, beads_.pair(i, j), ra + rb, 1 / ra, 1 / rb));
+            pair_constants(plan_, beads_, i, j));
       }
     walls_.assign(s.walls.size(), {});
     for (Size w = 0; w < s.walls.size(); ++w) {
       walls_[w] = packets(n, false);
       for (Size i = 0; i < n; ++i) {
         walls_[w].i[i] = record(i);
-        const double r = beads_.radius(i);
         put(walls_[w], i, {static_cast<std::int32_t>(i), -1 - static_cast<std::int32_t>(w)},
-            contact_constants(plan_.laws->walls[w], beads_.wall(i), r, 1 / r, 0));
+            wall_constants(plan_, beads_, w, i));
       }
     }
     kept_.clear();

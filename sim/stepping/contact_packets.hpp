@@ -43,6 +43,7 @@ struct ContactPackets {
   std::vector<std::int32_t> source;  ///< [packet][lane] pair of the outer list, or bead; -1: padding
   std::int64_t count = 0;            ///< packets
 
+  /// Bytes in use.
   [[nodiscard]] std::size_t bytes() const {
     return bytes_of(i, j, force_i, force_j, memory, constants, shift, source);
   }

@@ -41,7 +41,7 @@ void find_near_pairs(ListedBeads& beads, OuterPairs& outer, double margin, doubl
   NearPairArgs scan{};
   scan.records = beads.packed.records();
   scan.i = outer.i.data(), scan.j = outer.j.data();
-  scan.reach = beads.packed.equal() ? beads.pair_constants.data() : outer.reach.data();
+  scan.reach = beads.packed.equal() ? beads.of_pairs.data() : outer.reach.data();
   scan.reach_step = beads.packed.equal() ? 0 : static_cast<std::ptrdiff_t>(width);
   scan.shift = outer.shift.empty() ? nullptr : outer.shift.data();
   scan.packets = static_cast<std::int64_t>(outer.near.size());

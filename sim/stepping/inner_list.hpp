@@ -45,26 +45,35 @@ class InnerList {
   void reset(const PacketLayout& layout, std::size_t beads);
   /// Stores the velocities of the beads as the reference for free flight, and finds their range.
   void measure_velocities(ListedBeads& beads, const std::vector<BeadShare>& shares);
-  /// Adapts slack and horizon for the next list. \param airborne few of the listed pairs are near
+  /// Adapts slack and horizon for the next list.
+  /// \param dt t0
+  /// \param skin of the outer list, sigma
+  /// \param airborne few of the listed pairs are near
   void set_horizon(double dt, double skin, bool airborne);
-  /// Limits slack and horizon so that no bead can arrive from outside an outer list with this skin.
+  /// Limits slack and horizon so that no bead can arrive from outside an outer list with this skin, sigma.
   void limit_to(double skin);
   /// Begins the validity of a new list.
   void begin();
-  /// Registers one step. \param strayed largest deviation of a velocity from free flight
+  /// Registers one step.
+  /// \param dt t0
+  /// \param strayed largest deviation of a velocity from free flight, sqrt(g sigma)
   void add_step(double dt, double strayed);
+  /// Whether the list is still valid after a further step of length dt, t0.
   [[nodiscard]] bool is_valid(double dt) const;
 
   /// Bound on the approach of two beads while the list is valid, sigma.
   [[nodiscard]] double margin() const { return margin_; }
+  /// Largest deviation of a bead from free flight while the list is valid, sigma.
   [[nodiscard]] double slack() const { return slack_; }
+  /// Longest time for which the list is valid, t0.
   [[nodiscard]] double horizon() const { return horizon_; }
   /// Steps since the list was built.
   [[nodiscard]] std::int64_t steps() const { return steps_; }
-  /// Largest magnitude of a velocity component when the list was built.
+  /// Largest magnitude of a velocity component when the list was built, sqrt(g sigma).
   [[nodiscard]] double fastest() const;
   /// Range of the velocities when the list was built.
   [[nodiscard]] const VelocityRange& range() const { return range_; }
+  /// The velocities when the list was built, which are the reference for free flight.
   [[nodiscard]] const double* reference() const { return reference_.data(); }
   [[nodiscard]] std::size_t bytes() const { return reference_.bytes(); }
 

@@ -281,7 +281,7 @@ void ListSolver::pair_forces(const System& s, Part& part, Size begin, Size end) 
   p.force_j = parts_.size() > 1 ? a.force_j.data() + lane : p.j;
   p.memory = a.memory.data() + lane * layout.memory;
   if (beads_.packed.equal()) {
-    p.constants = beads_.pair_constants.data();
+    p.constants = beads_.of_pairs.data();
   } else {
     p.constants_step = static_cast<std::ptrdiff_t>(a.constants.size()) / a.count;
     p.constants = a.constants.data() + p.constants_step * static_cast<std::ptrdiff_t>(begin);
@@ -307,7 +307,7 @@ void ListSolver::wall_forces(const System& s, Part& part) {
     g.records = beads_.packed.records(), g.spins = beads_.packed.spins(), g.forces = beads_.packed.forces();
     g.bead = near.i.data();
     g.memory = near.memory.data();
-    g.constants = equal ? beads_.wall_constants[w].data() : near.constants.data();
+    g.constants = equal ? beads_.of_walls[w].data() : near.constants.data();
     g.constants_step = equal ? 0 : static_cast<std::ptrdiff_t>(near.constants.size()) / near.count;
     g.packets = near.count;
     Vec3 v = Vec3::Zero();

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "sim/kernels/kernels.hpp"
+#include "sim/stepping/guard.hpp"
 #include "sim/stepping/solver.hpp"
 
 namespace twincell::sim {

@@ -35,17 +35,10 @@ ListedBeads::ListedBeads(const Plan& of, const Target& target)
       packed(plan) {}
 
 void ListedBeads::set_shared_constants() {
-  if (!packed.equal() || packed.size() == 0 || !pair_constants.empty()) return;
-  const double r = packed.radius(0);
-  pair_constants =
-      layout.broadcast(contact_constants(plan.laws->bead, packed.pair(0, 0), 2 * r, 1 / r, 1 / r));
+  if (!packed.equal() || packed.size() == 0 || !of_pairs.empty()) return;
+  of_pairs = layout.broadcast(pair_constants(plan, packed, 0, 0));
   for (std::size_t w = 0; w < plan.laws->walls.size(); ++w)
-    wall_constants.push_back(layout.broadcast(constants_at_wall(w, 0)));
-}
-
-std::vector<double> ListedBeads::constants_at_wall(std::size_t w, std::size_t place) const {
-  const double r = packed.radius(place);
-  return contact_constants(plan.laws->walls[w], packed.wall(place), r, 1 / r, 0);
+    of_walls.push_back(layout.broadcast(wall_constants(plan, packed, w, 0)));
 }
 
 }  // namespace twincell::sim

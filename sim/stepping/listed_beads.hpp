@@ -26,10 +26,12 @@ struct BeadShare {
   std::size_t begin = 0, end = 0;
   std::int32_t dummy = 0;  ///< place of a record after the beads that touches nothing
 
+  /// Whether a place belongs to this thread.
   [[nodiscard]] bool owns(std::int32_t place) const {
     return static_cast<std::size_t>(place) >= begin && static_cast<std::size_t>(place) < end;
   }
   [[nodiscard]] std::size_t size() const { return end - begin; }
+  /// The places as kernels take them.
   [[nodiscard]] BeadRange range() const {
     return {static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end)};
   }
@@ -44,16 +46,15 @@ struct ListedBeads {
 
   /// Computes the constants of contacts of equal beads, which all contacts of a kind share.
   void set_shared_constants();
-  /// Constants of the contact of bead `place` with wall w.
-  [[nodiscard]] std::vector<double> constants_at_wall(std::size_t w, std::size_t place) const;
 
   Plan plan;
   Kernels kernels;
   PacketLayout layout;
   PackedBeads packed;
   BeadOrder order;
-  std::vector<double> pair_constants;               ///< for equal beads, broadcast over the SIMD lanes
-  std::vector<std::vector<double>> wall_constants;  ///< the same for each wall
+  std::vector<double>
+      of_pairs;  ///< constants of the contacts of two beads, for equal beads, broadcast over the SIMD lanes
+  std::vector<std::vector<double>> of_walls;  ///< the same for each wall
 };
 
 }  // namespace twincell::sim

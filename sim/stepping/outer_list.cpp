@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/cancellation.hpp"
-#include "sim/laws/cell_laws.hpp"
 #include "sim/system/cell_grid.hpp"
 
 namespace twincell::sim {
@@ -90,7 +89,7 @@ void OuterPairs::assign(const ListedBeads& beads, const BeadShare& share, const 
       }
     if (!packed.equal()) {
       const double ra = packed.radius(a), rb = packed.radius(b);
-      const auto set = contact_constants(beads.plan.laws->bead, packed.pair(a, b), ra + rb, 1 / ra, 1 / rb);
+      const auto set = pair_constants(beads.plan, packed, a, b);
       if (p == 0) resize_closely(constants, pairs * set.size());
       std::copy(set.begin(), set.end(), constants.begin() + static_cast<std::ptrdiff_t>(p * set.size()));
       reach[p] = ra + rb;

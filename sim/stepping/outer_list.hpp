@@ -71,8 +71,10 @@ class OuterList {
   void discard();
   /// Registers a new inner list with its margin: pairs of the outer list that may come as close as this may
   /// touch while the inner list is valid.
+  /// \param margin sigma
   /// \returns whether the outer list must be built first
   bool is_stale(const PackedBeads& beads, double margin);
+  /// Registers that an inner list was built.
   void count_inner_list() { ++inner_lists_; }
 
   /// Adapts the skin to the number of listed pairs and of inner lists since the last build.

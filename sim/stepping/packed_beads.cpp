@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "sim/contact/plate_drag.hpp"
+#include "sim/laws/cell_laws.hpp"
 
 namespace twincell::sim {
 
@@ -173,6 +174,16 @@ void PackedBeads::add_plate_drag(const System& s, double velocity_x, double velo
     f[0] += plate_drag_force(drag, r[2], velocity_x, quantum);
     f[1] += plate_drag_force(drag, r[3], velocity_z, quantum);
   }
+}
+
+std::vector<double> pair_constants(const Plan& plan, const PackedBeads& beads, std::size_t a, std::size_t b) {
+  const double ra = beads.radius(a), rb = beads.radius(b);
+  return contact_constants(plan.laws->bead, beads.pair(a, b), ra + rb, 1 / ra, 1 / rb);
+}
+
+std::vector<double> wall_constants(const Plan& plan, const PackedBeads& beads, std::size_t w, std::size_t a) {
+  const double r = beads.radius(a);
+  return contact_constants(plan.laws->walls[w], beads.wall(a), r, 1 / r, 0);
 }
 
 double rounding_constant(const Plan& plan) {

@@ -12,6 +12,7 @@ namespace twincell::sim {
 /// An array of numbers aligned to cache lines.
 class Lines {
  public:
+  /// Makes room for a count of numbers; new numbers are 0.
   void resize(std::size_t numbers) { lines_.resize((numbers + 7) / 8); }
   [[nodiscard]] double* data() { return lines_.empty() ? nullptr : lines_[0].c; }
   [[nodiscard]] const double* data() const { return lines_.empty() ? nullptr : lines_[0].c; }
@@ -53,11 +54,14 @@ class PackedBeads {
     return static_cast<double>(sizeof(double)) * (2 * changed + (flat ? 2 : 4) + (equal_ ? 0 : 5));
   }
   [[nodiscard]] bool equal() const { return equal_; }
+  /// Centre of the bead in place k, sigma.
   [[nodiscard]] Vec3 position(std::size_t k) const;
   [[nodiscard]] double radius(std::size_t k) const { return radius_[equal_ ? 0 : k]; }
   [[nodiscard]] double mass(std::size_t k) const { return mass_[equal_ ? 0 : k]; }
   [[nodiscard]] double inertia(std::size_t k) const { return inertia_[equal_ ? 0 : k]; }
+  /// Scale of the contact of two beads, by their places.
   [[nodiscard]] PairScale pair(std::size_t a, std::size_t b) const;
+  /// Scale of the contact of a bead with a wall.
   [[nodiscard]] PairScale wall(std::size_t a) const;
 
   [[nodiscard]] double* records() { return records_.data(); }
@@ -65,9 +69,11 @@ class PackedBeads {
   [[nodiscard]] double* forces() { return forces_.data(); }
   /// Arguments of the integration kernel for all beads.
   [[nodiscard]] IntegrateArgs integrate_args(const System& s);
-  /// Moves all beads along their velocities for a time that may be negative.
+  /// Moves all beads along their velocities for a time, t0, that may be negative.
   void drift(double time);
-  /// Adds the drag of the front and back plates to the forces (2D).
+  /// Adds the drag of the front and back plates to the forces of places begin .. end - 1 (2D).
+  /// \param velocity_x, velocity_z of the cell, sqrt(g sigma)
+  /// \param quantum rounding_constant()
   void add_plate_drag(const System& s, double velocity_x, double velocity_z, double quantum,
                       std::size_t begin, std::size_t end);
 
@@ -82,7 +88,12 @@ class PackedBeads {
   std::vector<double> radius_, mass_, inertia_, turn_;
 };
 
-/// The constant that rounds forces to a quantum with which sums are exact (contact.hpp rounded()).
+/// Constants of the contact of beads a and b (contact_constants).
+std::vector<double> pair_constants(const Plan& plan, const PackedBeads& beads, std::size_t a, std::size_t b);
+/// Constants of the contact of bead a with wall w.
+std::vector<double> wall_constants(const Plan& plan, const PackedBeads& beads, std::size_t w, std::size_t a);
+
+/// The constant, m g, that rounds forces to a quantum with which sums are exact (contact.hpp rounded()).
 double rounding_constant(const Plan& plan);
 
 }  // namespace twincell::sim

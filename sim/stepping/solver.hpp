@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "sim/scene/plan.hpp"
-#include "sim/stepping/guard.hpp"
 #include "sim/system/system.hpp"
 #include "trajectory/trajectory.hpp"
 

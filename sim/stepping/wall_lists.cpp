@@ -122,7 +122,7 @@ void WallContacts::pack(ListedBeads& beads, const BeadShare& share, Size w, cons
   near.count = static_cast<std::int64_t>(count);
   near.i.assign(padded, layout.record(share.dummy));
   near.memory.assign(padded * layout.memory, 0);
-  const Size constants = beads.packed.equal() ? 0 : beads.constants_at_wall(w, 0).size();
+  const Size constants = beads.packed.equal() ? 0 : wall_constants(beads.plan, beads.packed, w, 0).size();
   near.constants.assign(padded * constants, 1);
   Size before = 0;
   for (Size r = 0; r < n; ++r) {
@@ -132,7 +132,7 @@ void WallContacts::pack(ListedBeads& beads, const BeadShare& share, Size w, cons
       for (Size m = 0; m < layout.memory; ++m)
         near.memory[layout.index(r, layout.memory, m)] = old.memory[layout.index(before, layout.memory, m)];
     if (constants > 0) {
-      const auto set = beads.constants_at_wall(w, static_cast<Size>(near.source[r]));
+      const auto set = wall_constants(beads.plan, beads.packed, w, static_cast<Size>(near.source[r]));
       for (Size m = 0; m < constants; ++m) near.constants[layout.index(r, constants, m)] = set[m];
     }
   }

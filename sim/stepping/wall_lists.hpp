@@ -25,15 +25,19 @@ class WallLists {
  public:
   /// Prepares for a number of walls; all lists are stale.
   void reset(std::size_t walls);
+  /// All lists become stale.
   void discard() { all_ = true; }
-  /// Registers one step, in which the plate moved. \param added change of velocities by contacts and gravity
-  /// since the inner list was built
+  /// Registers one step, in which the plate moved.
+  /// \param added change of velocities by contacts and gravity since the inner list was built, sqrt(g sigma)
   void add_step(const System& s, const PlateState& plate, const VelocityRange& range, double added);
+  /// Whether a list has become invalid.
   [[nodiscard]] bool any_stale() const;
   /// Marks the lists that have become invalid and sets the margins of their successors.
+  /// \param skin largest margin, sigma
   void refresh(const System& s, const PlateState& plate, const VelocityRange& range, double skin);
-  /// Whether list w must be built, with which margin.
+  /// Whether list w must be built.
   [[nodiscard]] bool is_stale(std::size_t w) const { return stale_[w] != 0; }
+  /// Margin of list w, sigma.
   [[nodiscard]] double margin(std::size_t w) const { return margin_[w]; }
 
  private:

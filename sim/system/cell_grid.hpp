@@ -14,11 +14,12 @@
 
 namespace twincell::sim {
 
+/// Position of a bead, sigma.
 inline Vec3 centre_of(const Bead& b) {
   return {b.x, b.y, b.z};
 }
 
-/// Shift to the nearest periodic image: r + nearest_shift(r) is the shortest. Period 0: not periodic.
+/// Shift to the nearest periodic image, sigma: r + nearest_shift(r) is the shortest. Period 0: not periodic.
 inline Vec3 nearest_shift(const Vec3& r, const std::array<double, 3>& period) {
   Vec3 shift = Vec3::Zero();
   for (int a = 0; a < 3; ++a) shift[a] = nearest_shift(r[a], period[static_cast<std::size_t>(a)]);
@@ -66,7 +67,7 @@ class CellGrid {
                                               : kClasses - 1;
   }
 
-  /// Inserts a bead. A bead without a finite position is left out.
+  /// Inserts a bead with centre r and radius, both in sigma. A bead without a finite position is left out.
   void insert(std::int32_t bead, const Vec3& r, double radius) {
     if (!r.allFinite()) return;
     const int k = size_class(radius);

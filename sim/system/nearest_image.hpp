@@ -13,7 +13,8 @@ inline double nearest_whole(double x) {
   return (x + kRounds) - kRounds;
 }
 
-/// Shift to the nearest periodic image: r + nearest_shift(r, period) is the shortest. Period 0: not periodic.
+/// Shift to the nearest periodic image, in the unit of r: r + nearest_shift(r, period) is the shortest.
+/// Period 0: not periodic.
 inline double nearest_shift(double r, double period) {
   return period > 0 && 2 * std::abs(r) >= period ? -period * nearest_whole(r / period) : 0;
 }

@@ -46,6 +46,7 @@ struct Wall {
 /// or a schedule that fluidises a bed and then calms it.
 struct Envelope {
   std::vector<std::pair<double, double>> points;  ///< cycles increase; empty: f = 1
+  /// f after a number of cycles since phase 0.
   [[nodiscard]] double at(double cycles) const;
   [[nodiscard]] double slope(double cycles) const;  ///< per cycle
   /// Number of cycles after which f is constant.
@@ -77,13 +78,13 @@ struct System {
   [[nodiscard]] double phase() const { return phase_at(step); }
   [[nodiscard]] double cycles() const { return cycles_at(step); }
   [[nodiscard]] double time() const { return static_cast<double>(step) * dt; }
-  /// Displacement of the plate along drive.axis.
+  /// Displacement of the plate along drive.axis, sigma.
   [[nodiscard]] double plate_height() const { return plate_height_at(step); }
-  /// Velocity of the plate along drive.axis.
+  /// Velocity of the plate along drive.axis, sqrt(g sigma).
   [[nodiscard]] double plate_velocity() const {
     return in_envelope(drive.velocity(phase(), cycle_of(step)), drive.displacement(phase(), cycle_of(step)));
   }
-  /// Displacement and velocity of the plate in space.
+  /// Displacement (sigma) and velocity (sqrt(g sigma)) of the plate in space.
   [[nodiscard]] Vec3 plate_displacement() const { return plate_displacement_at(step); }
   [[nodiscard]] Vec3 plate_velocity_in_space() const {
     Vec3 v = plate_velocity() * Vec3::Unit(static_cast<int>(drive.axis));
@@ -91,7 +92,7 @@ struct System {
       v.x() += in_envelope(drive.horizontal_velocity(phase()), drive.horizontal_displacement(phase()));
     return v;
   }
-  /// Displacement of the plate at the previous step, with the same bits as then.
+  /// Displacement of the plate at the previous step, sigma, with the same bits as then.
   [[nodiscard]] Vec3 plate_displacement_before() const { return plate_displacement_at(step - 1); }
   /// The step that is nearest to `cycles` cycles after phase 0.
   [[nodiscard]] std::int64_t step_at(double cycles) const {
@@ -115,7 +116,8 @@ struct System {
     if (changes_frequency()) return drive.cycles_at(static_cast<double>(k) * dt);
     return static_cast<double>(cycle_of(k)) + phase_at(k);
   }
-  /// Velocity of a motion whose stroke the envelope multiplies. \param v, z of the motion without it
+  /// Velocity of a motion whose stroke the envelope multiplies.
+  /// \param v, z of the motion without it
   [[nodiscard]] double in_envelope(double v, double z) const {
     if (envelope.points.empty()) return v;
     return envelope.at(cycles()) * v + envelope.slope(cycles()) / drive.period() * z;
@@ -134,7 +136,7 @@ struct System {
   }
 };
 
-/// n . w of a wall at present.
+/// n . w of a wall at present, sigma.
 inline double offset_now(const System& s, const Wall& wall) {
   return wall.moves ? wall.offset + wall.n.dot(s.plate_displacement()) : wall.offset;
 }

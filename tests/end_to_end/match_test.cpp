@@ -1,5 +1,6 @@
 // `match` as a user runs it, on frames that the synthetic camera took of a bed that is shipped with its true
 // positions.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -151,7 +151,7 @@ Ran run_verb(const Verb& verb, const std::string& output, const std::vector<std:
   return run_program(words);
 }
 
-TEST(Outputs, NoVerbHarmsWhatItDidNotMake) {
+TEST(Outputs, ForeignFilesAreNotOverwritten) {
   const Sandbox sandbox;
   const auto before = Sandbox::contents();
   const std::vector<std::string> for_all = {

@@ -360,7 +360,7 @@ TEST_F(Refusals, WordsThatDoNotGoTogether) {
        {"import @t.h5 -o @new.h5", kUsage, {"t.h5", "already"}},
        {"import @g.csv -o @new.h5", kInput, {"g.csv:1", "no column 'frame'"}},
        {"import @beads.csv -o @new.h5", kInput, {"beads.csv:1", "'particle'", "track"}},
-       {"import @text.png -o @new.h5", kInput, {"text.png:1", "not a text dump of LAMMPS", "csv"}},
+       {"import @text.png -o @new.h5", kUsage, {"text.png", "--format", "'ITEM:'", "csv"}},
        {table + "--dimension 3", kUsage, {"--cell-origin", "y of this file increases downwards"}},
        {table, kInput, {"deep.csv:3", "z = 0.7", "--dimension 3"}},
        {table + "--columns y=x", kUsage, {"--columns", "'x' is both x and y"}},

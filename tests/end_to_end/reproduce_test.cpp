@@ -202,7 +202,10 @@ TEST(Reproduce, AllOfAFolderBecomesThePageOnThePapers) {
   std::ostringstream page;
   page << std::ifstream(fs::path(folder / "out") / "papers.md").rdbuf();
   EXPECT_NE(page.str().find("### p1-fig4"), std::string::npos);
-  EXPECT_NE(page.str().find("| `p1-table1` | 13 | 0 | 0 | 0 | 0 |"), std::string::npos) << page.str();
+  EXPECT_NE(page.str().find("| `p1-table1`, not in the sum | 13 | 0 | 0 | 0 | 0 |"), std::string::npos)
+      << page.str();
+  EXPECT_NE(page.str().find("![p1-fig4](p1-fig4/p1-fig4.svg)"), std::string::npos) << page.str();
+  EXPECT_TRUE(fs::exists(fs::path(folder / "out") / "p1-fig4/p1-fig4.svg"));
   EXPECT_EQ(run_program({"reproduce", "--all", "p1-fig4", "-q"}).code, 2);
   EXPECT_EQ(run_program({"reproduce", "-q"}).code, 2);
 }

@@ -331,7 +331,7 @@ TEST_F(DemoFilm, TheOriginIsTwoNumbers) {
   EXPECT_EQ(nlohmann::json::parse(ran.out)["camera"]["origin_px"], (std::vector<double>{20, 186.2}));
 }
 
-TEST_F(DemoFilm, AScoreOfNothingIsNone) {
+TEST_F(DemoFilm, ScoringNoBeadsIsRefused) {
   const Ran ran =
       track({"--frames", ":3", "--truth", stack_ + "/truth.csv", "--scored-rows", "9000", "9001"});
   EXPECT_EQ(ran.code, 3);

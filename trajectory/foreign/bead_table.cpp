@@ -127,7 +127,8 @@ class TableReader final : public PictureBeadsReader {
       if (may_be_nan && field.empty()) return std::numeric_limits<double>::quiet_NaN();
       double value = 0;
       const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-      if (error != std::errc() || end != field.data() + field.size() || !(may_be_nan || std::isfinite(value)))
+      if (error != std::errc() || end != field.data() + field.size() || std::isinf(value) ||
+          (std::isnan(value) && !may_be_nan))
         throw InputError({.file = file().string(), .line = number, .key = quantity},
                          fmt::format("'{}' is not a finite number.", field.substr(0, 60)));
       return value;
@@ -148,11 +149,16 @@ class TableReader final : public PictureBeadsReader {
     // A plane needs no z; the reader of the trajectory refuses one that differs between beads.
     const double z = real("z", 0, options_.dimension == 2);
     row.bead.position = upright(Vec3(real("x", 0), real("y", 0), std::isfinite(z) ? z : 0));
-    row.bead.velocity = upright(Vec3(real("vx", 0), real("vy", 0), real("vz", 0)));
+    row.bead.velocity = upright(Vec3(real("vx", 0, true), real("vy", 0, true), real("vz", 0, true)));
     const Vec3 u(real("sigma_x", 0, true), real("sigma_y", 0, true), real("sigma_z", 0, true));
     if (u.minCoeff() < 0) fail_at(number, "a standard error is negative.");
     row.bead.uncertainty = upright(u).cwiseAbs();  // has no direction
     row.bead.radius = real("radius", 0.5 * real("diameter", 0));
+    constexpr double kSameSize = 0.05;  // of numbers with few digits
+    if (const double diameter = real("diameter", 2 * row.bead.radius);
+        std::abs(2 * row.bead.radius - diameter) > kSameSize * diameter)
+      fail_at(number, fmt::format("the radius is {:g} and the diameter {:g}, which is not twice the radius.",
+                                  row.bead.radius, diameter));
     if (has_.radius && !(row.bead.radius > 0)) fail_at(number, "a bead has no size.");
     row.bead.mass = real("bead_mass", 0);
     if (has_.mass && !(row.bead.mass > 0)) fail_at(number, "a bead has no mass.");

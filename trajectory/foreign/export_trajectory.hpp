@@ -21,8 +21,8 @@ struct ExportUnits {
 
   /// sigma and t0, or the number of the frame where that is the time.
   static ExportUnits reduced(const TrajectoryInfo& info);
-  /// mm and s, or the number of the frame where that is the time. \throws ConfigError at `option` if the
-  /// trajectory does not state its scale
+  /// mm and s, or the number of the frame where that is the time.
+  /// \throws ConfigError at `option` if the trajectory does not state its scale
   static ExportUnits laboratory(const TrajectoryInfo& info, const std::string& option);
 };
 
@@ -40,8 +40,9 @@ struct BeadNumbers {
 ForeignFrame foreign_frame_of(const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units,
                               const std::vector<std::vector<double>>& numbers = {});
 
-/// Writes all frames to `part`, a file or a folder, with `numbers` if the format carries them. \returns the
-/// number of frames \throws RunError if it cannot be written
+/// Writes all frames to `part`, a file or a folder, with `numbers` if the format carries them.
+/// \returns the number of frames
+/// \throws RunError if it cannot be written
 std::size_t export_trajectory(const TrajectorySource& source, const ForeignFormat& format,
                               const ExportUnits& units, const std::filesystem::path& part,
                               const std::string& stem, Progress& progress = Progress::none(),

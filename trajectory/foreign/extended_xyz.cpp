@@ -190,8 +190,11 @@ class XyzReader final : public ForeignReader {
     if (words_.size() != n_words_)
       fail(fmt::format("{} columns are needed, {} were found.", n_words_, words_.size()));
     const auto one = [&](const Property* p) { return number(words_[p->first]); };
-    const auto three = [&](const Property* p) {
-      return Vec3(number(words_[p->first]), number(words_[p->first + 1]), number(words_[p->first + 2]));
+    const auto three = [&](const Property* p, bool may_be_nan = false) {
+      Vec3 v;
+      for (std::size_t k = 0; k < 3; ++k)
+        v[static_cast<int>(k)] = number_at(in_.number(), words_[p->first + k], may_be_nan);
+      return v;
     };
     ForeignBead bead;
     bead.line = in_.number();
@@ -202,8 +205,8 @@ class XyzReader final : public ForeignReader {
     if (mass_) bead.mass = one(mass_);
     if (mass_ && !(bead.mass > 0)) fail("a bead has no mass.");
     bead.position = three(position_);
-    if (velocity_) bead.velocity = three(velocity_);
-    if (spin_) bead.spin = three(spin_);
+    if (velocity_) bead.velocity = three(velocity_, true);
+    if (spin_) bead.spin = three(spin_, true);
     s.beads.push_back(bead);
   }
 

@@ -47,9 +47,9 @@ std::int64_t ForeignReader::whole_at(long line, std::string_view word) const {
   return value;
 }
 
-double ForeignReader::number_at(long line, std::string_view word) const {
+double ForeignReader::number_at(long line, std::string_view word, bool may_be_nan) const {
   double value = 0;
-  if (!parses(word, value) || !std::isfinite(value))
+  if (!parses(word, value) || std::isinf(value) || (std::isnan(value) && !may_be_nan))
     fail_at(line, fmt::format("'{}' is not a finite number.", word.substr(0, kExcerpt)));
   return value;
 }

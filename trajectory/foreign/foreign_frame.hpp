@@ -55,7 +55,8 @@ struct ForeignFrame {
 inline Vec3 to_picture(const Vec3& v, int dimension) {
   return dimension == 3 ? Vec3(v.x(), -v.z() + 0.0, v.y()) : Vec3(v.x(), -v.y() + 0.0, v.z());
 }
-/// The inverse of to_picture. \param y_up y increases upwards
+/// The inverse of to_picture.
+/// \param y_up y increases upwards
 inline Vec3 from_picture(const Vec3& v, int dimension, bool y_up) {
   const double height = y_up ? v.y() : -v.y() + 0.0;
   return dimension == 3 ? Vec3(v.x(), v.z(), height) : Vec3(v.x(), height, v.z());
@@ -85,7 +86,8 @@ class ForeignReader {
   ForeignReader& operator=(const ForeignReader&) = delete;
   virtual ~ForeignReader() = default;
 
-  /// Reads the next frame. \returns false at the end of the file
+  /// Reads the next frame.
+  /// \returns false at the end of the file
   /// \throws InputError naming file and line for anything malformed
   virtual bool next(ForeignFrame& s) = 0;
   /// Known once the first frame has been read.
@@ -104,9 +106,11 @@ class ForeignReader {
 
  protected:
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
-  /// The number that `word` is. \throws InputError as fail_at if it is not a whole or not a finite number
+  /// The number that `word` is.
+  /// \throws InputError as fail_at if it is not a whole or not a finite number
+  /// \param may_be_nan NaN is a number too: a velocity that is unknown
   [[nodiscard]] std::int64_t whole_at(long line, std::string_view word) const;
-  [[nodiscard]] double number_at(long line, std::string_view word) const;
+  [[nodiscard]] double number_at(long line, std::string_view word, bool may_be_nan = false) const;
   /// The integer that `value` is; nothing if it is none, or above kExact in size, where doubles skip
   /// integers.
   [[nodiscard]] static std::optional<std::int64_t> integer_of(double value);
@@ -126,7 +130,8 @@ class ForeignWriter {
 
   /// \throws RunError if the frame cannot be stored
   virtual void append(const ForeignFrame& s) = 0;
-  /// Writes what follows the last frame and closes. \throws RunError as append
+  /// Writes what follows the last frame and closes.
+  /// \throws RunError as append
   virtual void finish() = 0;
 };
 

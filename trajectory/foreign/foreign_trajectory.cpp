@@ -51,8 +51,8 @@ bool next_sorted(ForeignReader& reader, ForeignFrame& s) {
 /// What the frames state about one bead.
 struct SeenBead {
   double radius, mass;  ///< mean of the radii, sigma; first mass
-  bool tracer;
-  double least, most;  ///< radii, sigma
+  double tracer;        ///< frames in which it is marked as a tracer
+  double least, most;   ///< radii, sigma
   long type;
   double n = 1;  ///< frames
 };
@@ -64,13 +64,17 @@ struct SeenBeads {
 
   void add(const ForeignFrame& s, const ForeignOptions& o, std::optional<long> tracer_type) {
     for (const ForeignBead& a : s.beads) {
-      const SeenBead bead{a.radius / o.sigma,    a.mass / o.bead_mass.value_or(1),
-                          tracer_type == a.type, a.radius / o.sigma,
-                          a.radius / o.sigma,    a.type};
+      const SeenBead bead{a.radius / o.sigma,
+                          a.mass / o.bead_mass.value_or(1),
+                          tracer_type == a.type ? 1. : 0.,
+                          a.radius / o.sigma,
+                          a.radius / o.sigma,
+                          a.type};
       const auto [at, is_new] = of_id.emplace(a.id, bead);
       if (is_new) continue;
       SeenBead& known = at->second;
       known.radius += (bead.radius - known.radius) / ++known.n;  // equal radii stay equal to the bit
+      known.tracer += bead.tracer;
       known.least = std::min(known.least, bead.radius);
       known.most = std::max(known.most, bead.radius);
     }
@@ -86,6 +90,16 @@ std::string changing_radii(const SeenBeads& seen) {
       }))
     return {};
   return "the radii of beads change by more than a tenth from frame to frame: each has its mean.";
+}
+
+/// Complaint about beads that are tracers in some frames only; empty if there are none.
+std::string changing_tracers(const SeenBeads& seen) {
+  const auto n = std::ranges::count_if(seen.of_id, [](const auto& bead) {
+    return bead.second.tracer > 0 && bead.second.tracer < bead.second.n;
+  });
+  if (n == 0) return {};
+  return fmt::format("{} in some frames only (wrong links?): each bead is what it is in most frames.",
+                     n == 1 ? "1 bead is a tracer" : fmt::format("{} beads are tracers", n));
 }
 
 /// Complaint about masses that are not read; empty if all are equal.
@@ -266,7 +280,7 @@ struct ForeignTrajectory::Impl {
       ids.push_back(id);
       info.radius.push_back(bead.radius);
       info.mass.push_back(bead.mass);
-      info.tracer.push_back(bead.tracer ? 1 : 0);
+      info.tracer.push_back(2 * bead.tracer > bead.n ? 1 : 0);
     }
     info.columns.identity = *seen.fewest < ids.size();
   }
@@ -281,6 +295,7 @@ struct ForeignTrajectory::Impl {
     if (columns.radius) add(changing_radii(seen));
     if (columns.mass && !o.bead_mass) add(unread_masses(seen));
     if (columns.type && !tracer_type(columns)) add(unused_types(seen));
+    if (tracer_type(columns)) add(changing_tracers(seen));
   }
 
   /// End of the first pass: sets columns, box and boundaries.

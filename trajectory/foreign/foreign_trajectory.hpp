@@ -53,7 +53,9 @@ class ForeignTrajectory {
   ForeignTrajectory(const ForeignTrajectory&) = delete;
   ForeignTrajectory& operator=(const ForeignTrajectory&) = delete;
 
+  /// What the file and the options state of the run.
   [[nodiscard]] const TrajectoryInfo& info() const;
+  /// Number of frames.
   [[nodiscard]] std::size_t n_frames() const;
   /// Frames that the numbers of the steps leave out, if the smallest distance of two is that of all.
   [[nodiscard]] double missing_frames() const;

@@ -51,14 +51,18 @@ struct ForeignFormat {
 /// All formats, in the order of the help.
 const std::vector<const ForeignFormat*>& foreign_formats();
 
-/// The words of the formats that are written, or of those that are read, separated by ", ".
+/// The words of the formats that are written, separated by ", ".
 std::string written_formats();
+/// The words of the formats that are read, separated by ", ".
 std::string read_formats();
 
-/// The format with this word. \throws ConfigError at `option` with all words if there is none
+/// The format with this word.
+/// \throws ConfigError at `option` with all words if there is none
 const ForeignFormat& foreign_format(const std::string& word, const std::string& option);
 
-/// The format that is read and has this file's extension; LAMMPS's dump for any other.
+/// The format that is read and has this file's extension; for any other extension LAMMPS's dump, if the file
+/// begins as one.
+/// \throws InputError if it cannot be read, ConfigError at --format if no format follows
 const ForeignFormat& format_of_file(const std::filesystem::path& file);
 
 }  // namespace twincell

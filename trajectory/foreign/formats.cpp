@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 
 #include "core/error.hpp"
 #include "trajectory/foreign/format.hpp"
+#include "trajectory/foreign/text_file.hpp"
 
 namespace twincell {
 
@@ -26,6 +28,14 @@ std::string words_of(Has has) {
   for (const ForeignFormat* format : foreign_formats())
     if (has(*format)) words += fmt::format("{}{}", words.empty() ? "" : ", ", format->word);
   return words;
+}
+
+/// Whether the first line is that of a text dump of LAMMPS. \throws InputError as open_input
+bool begins_as_dump(const std::filesystem::path& file) {
+  constexpr std::string_view kBegin = "ITEM:";
+  std::string begin(kBegin.size(), '\0');
+  open_input(file).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin == kBegin;
 }
 
 }  // namespace
@@ -53,7 +63,14 @@ const ForeignFormat& format_of_file(const std::filesystem::path& file) {
       if (format->open != nullptr &&
           fmt::format("{} ", format->extensions).find(extension + " ") != std::string::npos)
         return *format;
-  return lammps_dump_format;
+  if (begins_as_dump(file)) return lammps_dump_format;
+  constexpr std::array<std::string_view, 5> kCompressed = {".gz", ".bz2", ".xz", ".zst", ".zip"};
+  if (std::find(kCompressed.begin(), kCompressed.end(), extension) != kCompressed.end())
+    throw InputError({file.string(), 0, 0, ""}, "the file is compressed; unpack it first.");
+  throw ConfigError({file.string(), 0, 0, "--format"},
+                    fmt::format("is needed, as no format has the ending of this file, and it does not begin "
+                                "with 'ITEM:' as a dump of LAMMPS does; give one of {}.",
+                                read_formats()));
 }
 
 }  // namespace twincell

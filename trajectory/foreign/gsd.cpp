@@ -211,7 +211,8 @@ class GsdReader final : public ForeignReader {
     const Vec3 centre = read_box(s);
     const auto position = numbers("particles/position", n, 3);
     if (position.empty() && n > 0) fail_at(0, fmt::format("frame {} has no positions.", frame_));
-    const auto velocity = numbers("particles/velocity", n, 3), image = numbers("particles/image", n, 3),
+    const bool planar = is_2d_ && states_plane();
+    const auto velocity = numbers("particles/velocity", n, 3, true), image = numbers("particles/image", n, 3),
                diameter = numbers("particles/diameter", n, 1), mass = numbers("particles/mass", n, 1),
                types = numbers("particles/typeid", n, 1), ids = numbers("log/particles/id", n, 1);
     has_.radius = has_.radius || !diameter.empty();
@@ -233,6 +234,8 @@ class GsdReader final : public ForeignReader {
         bead.position[k] = position[at] + centre[k] + (image.empty() ? 0 : image[at] * size[k]);
         if (!velocity.empty()) bead.velocity[k] = velocity[at];
       }
+      // A z that differs between beads is refused by ForeignTrajectory.
+      if (is_2d_ && !planar) bead.position.z() = position[3 * i + 2] + centre.z();
       s.beads.push_back(bead);
     }
     ++frame_;
@@ -291,8 +294,9 @@ class GsdReader final : public ForeignReader {
   }
 
   /// Values of a chunk of the present frame, or else of frame 0, which has the defaults; empty if there is
-  /// none of `n` rows.
-  std::vector<double> numbers(const std::string& name, std::size_t n, std::uint32_t columns) {
+  /// none of `n` rows. \param may_be_nan NaN is a value too: a velocity that is unknown
+  std::vector<double> numbers(const std::string& name, std::size_t n, std::uint32_t columns,
+                              bool may_be_nan = false) {
     auto found = index_.find({name, frame_});
     if (found == index_.end()) {
       found = index_.find({name, 0});
@@ -309,7 +313,7 @@ class GsdReader final : public ForeignReader {
     std::vector<double> values(total);
     for (std::size_t i = 0; i < total; ++i) {
       values[i] = value_of(raw.data() + i * width, static_cast<Type>(e.type));
-      if (!std::isfinite(values[i]))
+      if (std::isinf(values[i]) || (std::isnan(values[i]) && !may_be_nan))
         fail_at(0, fmt::format("{} of frame {} has a value that is not finite.", name, e.frame));
     }
     return values;
@@ -353,6 +357,12 @@ class GsdReader final : public ForeignReader {
         return as<double>(bytes);
     }
     return 0;
+  }
+
+  /// Whether the file says that its beads lie in a plane. HOOMD's default is three dimensions.
+  bool states_plane() {
+    const auto dimensions = numbers("configuration/dimensions", 1, 1);
+    return !dimensions.empty() && dimensions[0] == 2;
   }
 
   /// Reads the box. \returns what is added to positions: the centre of the box, or 0 where the file has none

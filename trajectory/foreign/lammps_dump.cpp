@@ -230,8 +230,9 @@ class DumpReader final : public ForeignReader {
         a.position[axis] = c.column == kNoColumn ? 0 : number(at(c.column));
         if (c.scaled) a.position[axis] = s.lower[axis] + a.position[axis] * length;
         if (c.image != kNoColumn) a.position[axis] += static_cast<double>(whole(at(c.image))) * length;
-        if (columns_.velocity[k] != kNoColumn) a.velocity[axis] = number(at(columns_.velocity[k]));
-        if (columns_.spin[k] != kNoColumn) a.spin[axis] = number(at(columns_.spin[k]));
+        if (columns_.velocity[k] != kNoColumn)
+          a.velocity[axis] = number_at(in_.number(), at(columns_.velocity[k]), true);
+        if (columns_.spin[k] != kNoColumn) a.spin[axis] = number_at(in_.number(), at(columns_.spin[k]), true);
       }
       s.beads.push_back(a);
     }

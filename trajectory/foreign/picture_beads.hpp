@@ -13,6 +13,8 @@ namespace twincell {
 /// format fills `beads_` and `has_`, then calls sort_by_frame().
 class PictureBeadsReader : public ForeignReader {
  public:
+  /// The beads of the next frame that has any.
+  /// \returns false after the last one
   bool next(ForeignFrame& s) final;
   [[nodiscard]] const ForeignColumns& columns() const final { return has_; }
   [[nodiscard]] Vec3 upright(const Vec3& v) const final {

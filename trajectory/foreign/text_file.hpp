@@ -11,7 +11,8 @@
 
 namespace twincell {
 
-/// Opens a file for reading. \throws InputError if it is missing, a folder, not a regular file, or unreadable
+/// Opens a file for reading.
+/// \throws InputError if it is missing, a folder, not a regular file, or unreadable
 std::ifstream open_input(const std::filesystem::path& file);
 /// Bytes of the file.
 std::int64_t size_of_input(const std::filesystem::path& file);
@@ -23,7 +24,8 @@ class LineReader {
 
   /// \throws InputError as open_input
   explicit LineReader(const std::filesystem::path& file);
-  /// Reads the next line without its end. \returns false at the end of the file
+  /// Reads the next line without its end.
+  /// \returns false at the end of the file
   /// \throws InputError for a line that is too long
   bool next();
   [[nodiscard]] std::string& line() { return line_; }
@@ -49,9 +51,11 @@ class TextOutput {
   explicit TextOutput(const std::filesystem::path& file);
   /// Text to which the caller appends.
   [[nodiscard]] std::string& text() { return text_; }
-  /// Writes the text if it is large. \throws RunError naming the file if it cannot be written
+  /// Writes the text if it is large.
+  /// \throws RunError naming the file if it cannot be written
   void flush_if_large();
-  /// Writes the rest and closes. \throws RunError as flush_if_large
+  /// Writes the rest and closes.
+  /// \throws RunError as flush_if_large
   void close();
 
  private:

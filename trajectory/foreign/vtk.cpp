@@ -6,7 +6,6 @@
 
 #include <cstring>
 
-#include "core/escape.hpp"
 #include "trajectory/foreign/format.hpp"
 #include "trajectory/foreign/text_file.hpp"
 

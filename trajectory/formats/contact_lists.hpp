@@ -20,7 +20,8 @@ class ContactListWriter {
   /// \param each K; 0: it is determined by the first contact, and without any there is no `values`
   ContactListWriter(h5::Handle group, hid_t value_type, std::size_t each = 0);
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(group_); }
-  /// Appends a frame. \throws RunError if its contacts have a number of values that differs from K
+  /// Appends a frame.
+  /// \throws RunError if its contacts have a number of values that differs from K
   void append(const std::vector<std::int32_t>& pairs, const std::vector<double>& values);
 
  private:
@@ -41,8 +42,8 @@ class ContactListReader {
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(pairs_); }
   /// K; 0 if no frame has a contact.
   [[nodiscard]] std::size_t values_each() const { return each_; }
-  /// Reads one frame. \throws InputError for a pair that is not a contact of the beads, and for a value that
-  /// is not finite
+  /// Reads one frame.
+  /// \throws InputError for a pair that is not a contact of the beads, and for a value that is not finite
   void read(std::size_t frame, std::vector<std::int32_t>& pairs, std::vector<double>& values) const;
 
  private:

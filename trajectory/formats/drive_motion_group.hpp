@@ -20,8 +20,8 @@ namespace twincell {
 ///     horizontal/phase            f64  cycles of this motion
 void write_drive_motion(hid_t drive, const Drive& motion);
 
-/// Reads them into `motion`, whose amplitude and omega are known. \throws InputError at `where` for numbers
-/// that no drive has
+/// Reads them into `motion`, whose amplitude and omega are known.
+/// \throws InputError at `where` for numbers that no drive has
 void read_drive_motion(hid_t drive, Drive& motion, const Where& where);
 
 }  // namespace twincell

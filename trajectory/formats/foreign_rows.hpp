@@ -23,13 +23,15 @@ class ForeignRows {
  public:
   ForeignRows() = default;
   /// Reads all ids, and all positions if they may be wrapped without a number of periods; these are unwrapped
-  /// by the rule of wrapped_positions.hpp. \param group the group of the particles
-  /// \param id, position its columns, which outlive this; `id` may be absent \throws InputError naming `file`
-  /// if a frame names a bead twice, if more beads occur than a frame has rows, or if images have another
-  /// shape than positions
+  /// by the rule of wrapped_positions.hpp.
+  /// \param group the group of the particles
+  /// \param id, position its columns, which outlive this; `id` may be absent
+  /// \throws InputError naming `file` if a frame names a bead twice, if more beads occur than a frame has
+  /// rows, or if images have another shape than positions
   ForeignRows(hid_t group, const h5::Series& id, const h5::Series& position, const Box& box,
               std::size_t n_beads, const std::string& file);
-  /// Changes a frame from the file's rows and positions. \param index its number
+  /// Changes a frame from the file's rows and positions.
+  /// \param index its number
   void restore(std::size_t index, Frame& frame) const;
 
  private:

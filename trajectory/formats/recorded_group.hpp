@@ -20,8 +20,9 @@ namespace twincell {
 ///     @file, @sha256        of the record
 void write_recorded(hid_t drive, const RecordedMotion& motion);
 
-/// Reads it. \throws InputError at `where` for missing or more than kMaxSamples samples, and for numbers
-/// that no record has
+/// Reads it.
+/// \throws InputError at `where` for missing or more than kMaxSamples samples, and for numbers that no record
+/// has
 std::shared_ptr<const RecordedMotion> read_recorded(hid_t drive, const Where& where);
 
 }  // namespace twincell

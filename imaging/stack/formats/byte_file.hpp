@@ -12,6 +12,7 @@
 namespace twincell::imaging::frames {
 
 /// \throws InputError always: "FILE: complaint"
+/// \throws InputError always, naming the file
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& complaint);
 
 /// Text from a file in quotes, for a message: its first 120 characters, with '?' for characters that are not
@@ -32,18 +33,25 @@ class ByteFile {
   [[nodiscard]] std::uint64_t size() const { return size_; }
   /// \throws InputError if [at, at + n) is not inside the file
   void require(std::uint64_t at, std::uint64_t n, const std::string& what) const;
+  /// Reads n bytes from byte `at` on.
+  /// \param what name of the part of the file, for messages
+  /// \throws InputError as require()
   void read(std::uint64_t at, std::uint64_t n, void* to, const std::string& what) const;
+  /// The same as a vector.
   [[nodiscard]] std::vector<std::uint8_t> bytes(std::uint64_t at, std::uint64_t n,
                                                 const std::string& what) const;
   /// Unsigned integer in n <= 8 bytes.
   [[nodiscard]] std::uint64_t number(std::uint64_t at, std::size_t n, const std::string& what,
                                      bool big_first = false) const;
+  /// Unsigned integer of 4 bytes, lowest first.
   [[nodiscard]] std::uint32_t u32(std::uint64_t at, const std::string& what) const {
     return static_cast<std::uint32_t>(number(at, 4, what));
   }
+  /// Signed integer of 4 bytes, lowest first.
   [[nodiscard]] std::int32_t i32(std::uint64_t at, const std::string& what) const {
     return static_cast<std::int32_t>(u32(at, what));
   }
+  /// IEEE number of 8 bytes, lowest first.
   [[nodiscard]] double f64(std::uint64_t at, const std::string& what) const;
   [[noreturn]] void refuse(const std::string& complaint) const { frames::refuse(file_, complaint); }
 

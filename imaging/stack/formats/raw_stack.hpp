@@ -25,7 +25,8 @@ class RawStack : public FrameSource {
  protected:
   explicit RawStack(const std::filesystem::path& file) : in_(file) {}
 
-  /// Position in the file of the first byte of frame i, from 0. \throws InputError if the frame is incomplete
+  /// Position in the file of the first byte of frame i, from 0.
+  /// \throws InputError if the frame is incomplete
   [[nodiscard]] virtual std::uint64_t place(std::uint64_t i) const = 0;
   /// Time stamp of frame i, s after info_.time_origin.
   [[nodiscard]] virtual std::optional<double> stamp_s(std::uint64_t /*i*/) const { return {}; }
@@ -37,7 +38,8 @@ class RawStack : public FrameSource {
   /// Sets layout_ and info_ from a header.
   /// \throws InputError if the frame size is not plausible for a file of this size
   void set_layout(std::uint64_t width, std::uint64_t height, int stored_bits);
-  /// To be called at the end of a constructor. \throws InputError if there are no frames
+  /// To be called at the end of a constructor.
+  /// \throws InputError if there are no frames
   void require_frames() const;
   /// \throws InputError if the file ends before its last frame, which begins at `last`
   void require_last(std::uint64_t last) const;

@@ -20,6 +20,7 @@ struct Head {
   std::string extension;            ///< in lower case, with its dot
   std::vector<std::uint8_t> bytes;  ///< the first bytes, up to kHeadBytes; never empty
 
+  /// Whether the bytes from `at` on are `magic`.
   [[nodiscard]] bool starts_with(std::string_view magic, std::size_t at = 0) const;
 };
 inline constexpr std::size_t kHeadBytes = 4096;
@@ -40,7 +41,8 @@ struct Reader {
 /// All readers, in the order in which they are tried.
 const std::vector<const Reader*>& readers();
 
-/// The first reader that owns the file. \throws InputError if there is none
+/// The first reader that owns the file.
+/// \throws InputError if there is none
 const Reader& reader_of(const Head& head);
 
 /// Whether open_folder() takes a file for a picture, by its extension in small or capital letters.

@@ -16,6 +16,8 @@ namespace twincell::imaging::frames {
 /// other.
 class SizeGuard {
  public:
+  /// \param name of the frame, for messages
+  /// \throws InputError if size or type of value differ from those of the first frame
   void check(const cv::Mat& frame, const std::string& name) {
     if (first_.empty()) {
       size_ = frame.size();

@@ -13,10 +13,11 @@ namespace twincell::sim {
 struct CohesiveSpringDashpot : LinearSpringDashpot {
   static constexpr std::string_view kWord = "cohesive",
                                     kName = "linear spring-dashpot, constant pull-off force";
+  static constexpr std::string_view kHelp = "linear, with a constant attraction while the surfaces touch";
   static constexpr const char* kKeys[] = {"k_n", "gamma_n", "c_n", "restitution", "pull_off_force"};
   static constexpr int kConstants = 3;
-  static constexpr bool kAttracts =
-      true;  ///< excludes separate integration of a contact (separate_integration.hpp)
+  /// Excludes separate integration of a contact (separate_integration.hpp).
+  static constexpr bool kAttracts = true;
 
   double pull_off_force = 0;  ///< F_c, m g
 

@@ -14,10 +14,12 @@ namespace twincell::sim {
 /// Neither paper clips it, and the closed forms of t_c and e_n require this.
 struct LinearSpringDashpot {
   static constexpr std::string_view kWord = "linear", kName = "linear spring-dashpot";
+  static constexpr std::string_view kHelp =
+      "spring and dashpot, which may pull at the end of a contact, as in both papers";
   static constexpr const char* kKeys[] = {"k_n", "gamma_n", "c_n", "restitution"};
   static constexpr int kConstants = 2, kMemory = 0;
-  static constexpr bool kSmooth =
-      true;  ///< one formula, also just outside the contact (binary_collision.hpp)
+  /// One formula, also just outside the contact (binary_collision.hpp).
+  static constexpr bool kSmooth = true;
 
   double k_n = 1e6;  ///< m g/sigma
   ViscousDamping damping;

@@ -10,6 +10,7 @@ namespace twincell::sim {
 /// 0.8948 -> 0.8971).
 struct NoTensionSpringDashpot : LinearSpringDashpot {
   static constexpr std::string_view kWord = "linear-no-tension", kName = "linear spring-dashpot, no tension";
+  static constexpr std::string_view kHelp = "never pulls";
   static constexpr bool kOmitsTension = true;
 
   static NoTensionSpringDashpot read(const ContactTable& t) { return {LinearSpringDashpot::read(t)}; }

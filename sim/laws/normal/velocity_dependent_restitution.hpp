@@ -17,6 +17,7 @@ namespace twincell::sim {
 struct VelocityDependentRestitution {
   static constexpr std::string_view kWord = "velocity-dependent-restitution",
                                     kName = "linear spring, restitution falling with speed";
+  static constexpr std::string_view kHelp = "linear, e decreases with the impact speed";
   static constexpr const char* kKeys[] = {"k_n", "restitution_fast", "restitution_speed"};
   static constexpr int kConstants = 4, kMemory = 1;
 

@@ -12,6 +12,7 @@ namespace twincell::sim {
 /// Beads roll freely, as in both papers (Fortini & Huang 2015; Bhateja et al. 2016).
 struct NoRolling {
   static constexpr std::string_view kWord = "none", kName = "none";
+  static constexpr std::string_view kHelp = "beads roll freely";
   static constexpr std::array<const char*, 0> kKeys = {};
   static constexpr int kConstants = 0;
   static constexpr bool kActs = false;

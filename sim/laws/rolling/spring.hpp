@@ -8,14 +8,16 @@
 #include <numbers>
 #include <string_view>
 
+#include "sim/laws/coulomb_limit.hpp"
 #include "sim/laws/parameters.hpp"
-#include "sim/laws/tangent.hpp"
 
 namespace twincell::sim {
 
 /// If the torque exceeds the limit, the spring is shortened, as the tangential spring is (SpringSlider).
 struct RollingSpring {
   static constexpr std::string_view kWord = "spring", kName = "torsional spring, dashpot, limit";
+  static constexpr std::string_view kHelp =
+      "torsional spring, dashpot and limit, without resistance to twisting about the normal";
   static constexpr const char* kKeys[] = {"k_r", "c_r", "mu_r"};
   static constexpr int kConstants = 4;
   static constexpr bool kActs = true;
@@ -43,11 +45,7 @@ struct RollingSpring {
 
   template <class V, class T, class X>
   static T torque(const V* c, const T& w, V f_n, V dt, X& theta) {
-    theta = fma(dt, w, theta);
-    const T dashpot = c[1] * w;
-    const auto [torque, slips] = limited(fma(c[0], theta, dashpot), c[2] * abs(f_n));
-    theta = select(slips, c[3] * (torque - dashpot), theta);
-    return torque;
+    return spring_slider(c, w, f_n, dt, theta);
   }
 };
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "sim/laws/coulomb_limit.hpp"
 #include "sim/laws/linear_collision.hpp"
-#include "sim/laws/tangent.hpp"
 
 namespace twincell::sim {
 
@@ -14,6 +14,7 @@ namespace twincell::sim {
 /// sin(theta)/c_t. F_n is the total normal force, including its dashpot.
 struct DashpotSlider {
   static constexpr std::string_view kWord = "dashpot", kName = "dashpot with Coulomb slider";
+  static constexpr std::string_view kHelp = "dashpot with Coulomb slider (second paper)";
   static constexpr const char* kKeys[] = {"mu", "gamma_t", "c_t", "c_t_over_c_n"};
   static constexpr int kConstants = 2;
   static constexpr bool kActs = true, kHistory = false;

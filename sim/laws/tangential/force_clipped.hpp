@@ -3,6 +3,7 @@
 /// Third reading of "truncate": only the force is truncated to the Coulomb limit, and the spring continues to
 /// stretch.
 
+#include "sim/laws/coulomb_limit.hpp"
 #include "sim/laws/tangential/spring.hpp"
 
 namespace twincell::sim {
@@ -12,6 +13,8 @@ namespace twincell::sim {
 struct ForceClippedSlider : SpringSlider {
   static constexpr std::string_view kWord = "force-clipped",
                                     kName = "spring with history, dashpot, limit on the force alone";
+  static constexpr std::string_view kHelp =
+      "the limit applies to the force and the spring continues to stretch";
   static constexpr SlipReading kReading = SlipReading::clip;
 
   static ForceClippedSlider read(const ContactTable& t) { return {SpringSlider::read(t)}; }

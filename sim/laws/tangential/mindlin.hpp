@@ -8,8 +8,8 @@
 #include <numbers>
 #include <string_view>
 
+#include "sim/laws/coulomb_limit.hpp"
 #include "sim/laws/parameters.hpp"
-#include "sim/laws/tangent.hpp"
 #include "sim/laws/tangential/dashpot.hpp"
 
 namespace twincell::sim {
@@ -20,6 +20,9 @@ namespace twincell::sim {
 /// so that it gives exactly the limit. There is no dashpot.
 struct MindlinSlider {
   static constexpr std::string_view kWord = "mindlin", kName = "Mindlin spring with history, Coulomb limit";
+  static constexpr std::string_view kHelp =
+      "no dashpot, stiffness from the overlap (Hertz–Mindlin), without memory of the normal "
+      "load";
   static constexpr const char* kKeys[] = {"mu", "youngs_modulus", "poisson_ratio"};
   static constexpr int kConstants = 2;
   static constexpr bool kActs = true, kHistory = true, kReadsOverlap = true;
@@ -41,7 +44,7 @@ struct MindlinSlider {
   /// step, the tangential oscillation is faster than the normal one by sqrt(2 (1 - nu)/(2 - nu) m_eff/m_t),
   /// at most 1.73 for discs and 1.87 for spheres: the step resolves both.
   [[nodiscard]] double shortest_time(const PairScale& /*p*/) const { return HUGE_VAL; }
-  /// Half a period of the spring at an overlap.
+  /// Half a period of the spring at an overlap, t0.
   [[nodiscard]] double shortest_time(const PairScale& p, double overlap) const {
     const double k_t = stiffness(p.r_eff) * std::sqrt(overlap);
     return k_t > 0 ? std::numbers::pi / std::sqrt(k_t * p.inv_m_t) : HUGE_VAL;

@@ -14,6 +14,7 @@ namespace twincell::sim {
 /// Smooth beads: no tangential force, hence no torque, no rotation and no history. This law reads no key.
 struct NoTangential {
   static constexpr std::string_view kWord = "none", kName = "none";
+  static constexpr std::string_view kHelp = "smooth beads";
   static constexpr std::array<const char*, 0> kKeys = {};
   static constexpr int kConstants = 0;
   static constexpr bool kActs = false, kHistory = false;

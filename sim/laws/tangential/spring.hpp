@@ -7,8 +7,8 @@
 #include <numbers>
 #include <string_view>
 
+#include "sim/laws/coulomb_limit.hpp"
 #include "sim/laws/linear_collision.hpp"
-#include "sim/laws/tangent.hpp"
 #include "sim/laws/tangential/dashpot.hpp"
 
 namespace twincell::sim {
@@ -26,6 +26,9 @@ enum class SlipReading {
 /// common reading.
 struct SpringSlider {
   static constexpr std::string_view kWord = "spring", kName = "spring with history, dashpot, Coulomb limit";
+  static constexpr std::string_view kHelp =
+      "spring with history, dashpot and Coulomb limit (first paper), at the limit the spring "
+      "is shortened so that spring and dashpot together give exactly the limit";
   static constexpr const char* kKeys[] = {"mu", "k_t", "gamma_t", "c_t", "c_t_over_c_n"};
   static constexpr int kConstants = 4;
   static constexpr bool kActs = true, kHistory = true;
@@ -50,11 +53,7 @@ struct SpringSlider {
 
   template <class V, class T, class X>
   static T force(const V* c, const T& v_t, V f_n, V dt, X& xi) {
-    xi = fma(dt, v_t, xi);
-    const T dashpot = c[1] * v_t;
-    const auto [force, slips] = limited(fma(c[0], xi, dashpot), c[2] * abs(f_n));
-    xi = select(slips, c[3] * (force - dashpot), xi);
-    return force;
+    return spring_slider(c, v_t, f_n, dt, xi);
   }
 };
 

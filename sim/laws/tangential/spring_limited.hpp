@@ -3,6 +3,7 @@
 /// Second reading of "truncate": only the spring is limited to the Coulomb limit, and the dashpot is dropped
 /// while the surfaces slide.
 
+#include "sim/laws/coulomb_limit.hpp"
 #include "sim/laws/tangential/spring.hpp"
 
 namespace twincell::sim {
@@ -11,6 +12,7 @@ namespace twincell::sim {
 struct SpringLimitedSlider : SpringSlider {
   static constexpr std::string_view kWord = "spring-limited",
                                     kName = "spring with history, dashpot, limit on the spring alone";
+  static constexpr std::string_view kHelp = "the limit applies to the spring and the dashpot is dropped";
   static constexpr SlipReading kReading = SlipReading::spring_limited;
 
   static SpringLimitedSlider read(const ContactTable& t) { return {SpringSlider::read(t)}; }

@@ -143,7 +143,7 @@ TEST(Batcher, ABedThatFailsStopsNoOther) {
 TEST(Batcher, AnErrorOfTheMachineReachesEveryBed) {
   Batcher batcher(std::make_unique<Watched>([](std::size_t) { throw Error(ExitCode::failed, "no power"); }));
   std::vector<Bed> beds = some_beds(springs);
-  for (const std::string& failure : together(beds, batcher)) EXPECT_EQ(failure, "no power");
+  for (const std::string& failure : together(beds, batcher)) EXPECT_EQ(failure, "no power.");
 }
 
 TEST(DeviceSolver, WhatHasNoKernelIsRefusedByName) {

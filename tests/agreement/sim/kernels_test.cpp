@@ -78,7 +78,7 @@ TEST_P(Kernels, RebuildIntervalDoesNotChangeBits) {
       });
 }
 
-// H24, H25: a stored vector changes sign when i and j are exchanged
+// a stored vector changes sign when i and j are exchanged
 TEST_P(Kernels, BeadOrderDoesNotChangeBits) {
   constexpr std::int64_t kSteps = 300;
   for_each_law(kSteps,
@@ -96,7 +96,7 @@ TEST_P(Kernels, BeadOrderDoesNotChangeBits) {
                });
 }
 
-TEST_P(Kernels, ThreadCountDoesNotChangeBits) {  // H26
+TEST_P(Kernels, ThreadCountDoesNotChangeBits) {
   constexpr std::int64_t kSteps = 40;
   for_each_law(
       kSteps, [&](const Plan& plan, const System& start, const Outcome& reference, const std::string& name) {

@@ -96,8 +96,8 @@ TEST(AllPairsSolver, ManyContactsAtATimeHaveTheBitsOfOne) {
   }
 }
 
-// V2.14, H22, H24: contact history is neither lost nor duplicated
-TEST(ListSolver, RebuildHabitsChangeNothing) {
+// V2.14: contact history is neither lost nor duplicated
+TEST(ListSolver, ResultIndependentOfListRebuildInterval) {
   for (const auto& law : {kPaperOne, kPlateDrag, kDashpot, kPaperOne + by("predicted"),
                           kPaperOne + by("split"), kSmooth + by("split"), kSpace + by("split")}) {
     const System seldom = shaken(law, SolverKind::best, 0);
@@ -132,7 +132,7 @@ System dilute(const std::string& dimension, SolverKind kind, std::int64_t rebuil
   return s;
 }
 
-TEST(ListSolver, BeadsThatNothingTouchesFlyTheSame) {
+TEST(ListSolver, BeadsWithoutContactsFlyTheSame) {
   for (const std::string dimension :
        {"", "sides = \"periodic\"\n", "dimension = 3\ndepth = 4.0\n",
         "dimension = 3\ndepth = 4.0\nsides = \"periodic\"\nplates = \"periodic\"\n"}) {
@@ -146,7 +146,7 @@ TEST(ListSolver, BeadsThatNothingTouchesFlyTheSame) {
   }
 }
 
-TEST(ListSolver, SameSceneSameBits) {  // H12
+TEST(ListSolver, SameSceneSameBits) {
   EXPECT_TRUE(same_bits(shaken(kPaperOne, SolverKind::best, 0), shaken(kPaperOne, SolverKind::best, 0)));
 }
 
@@ -159,7 +159,7 @@ TEST(ListSolver, FrictionOffIsTheSameAsMuZero) {  // EFFECTS: mu = 0 is bit for 
   EXPECT_TRUE(same_bits(none, zero));
 }
 
-// A frictional pair that crosses the periodic boundary while in contact behaves like one that does not (H15).
+// A frictional pair that crosses the periodic boundary while in contact behaves like one that does not.
 TEST(ListSolver, HistoryCrossesThePeriodicBoundary) {
   auto run = [](double x) {
     Bench b("[cell]\ngravity = 1.0\nsides = \"periodic\"\nwidth = 8.0\n");

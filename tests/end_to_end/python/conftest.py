@@ -1,6 +1,7 @@
 """What the tests of the Python module share: the program next to the module, and small inputs."""
 import json
 import os
+import re
 import subprocess
 from pathlib import Path
 
@@ -28,17 +29,17 @@ def document(*words, **options):
 
 
 def sentence(*words):
-    """The sentence with which the program refuses."""
+    """The sentence with which the program refuses, with options as Python names them."""
     done = program(*words)
     assert done.returncode != 0
-    return done.stderr.strip().splitlines()[-1].removeprefix("twincell: "), done.returncode
+    said = done.stderr.strip().splitlines()[-1].removeprefix("twincell: ")
+    return re.sub(r"(?<![\w-])--([a-z][a-z0-9-]*)", lambda option: option[1].replace("-", "_"), said), done.returncode
 
 
 def sentence_of_option(*words):
-    """The same for a refused option, which has no dashes in Python."""
-    said, code = sentence(*words)
-    assert said.startswith("--")
-    return said.removeprefix("--"), code
+    """The same for a sentence that begins with the refused option."""
+    assert program(*words).stderr.strip().splitlines()[-1].startswith("twincell: --")
+    return sentence(*words)
 
 
 @pytest.fixture(scope="session")

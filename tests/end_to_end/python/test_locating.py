@@ -150,7 +150,7 @@ def test_options_are_those_of_the_verbs():
             mine = set(inspect.signature(function).parameters)
         except ValueError:  # a function of C++
             mine = set(re.findall(r"(\w+): ", function.__doc__.splitlines()[0]))
-        assert mine > positional and mine - positional - {"callback", "box"} <= options, verb  # box: of an array
+        assert mine > positional and mine - positional - {"callback", "box", "unwrap"} <= options, verb  # box, unwrap: of an array
 
 
 def test_a_callback_is_told_of_frames_only():

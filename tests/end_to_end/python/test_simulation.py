@@ -22,6 +22,8 @@ def test_scenes_of_file_dict_and_preset_are_the_same(scene_file):
         f"{table}.{key}": value for table, keys in SCENE.items() if isinstance(keys, dict)
         for key, value in keys.items()})
     assert of_file.text == of_dict.text == preset.text
+    assert of_file == of_dict == preset and hash(of_dict) == hash(preset)
+    assert of_dict != twincell.Scene.from_dict({**SCENE, "beads": {"count": 61}}) and of_dict != SCENE
     assert of_dict.n_beads == 60 and of_dict.cycles == 4 and of_dict.drive.gamma == pytest.approx(1.6, abs=1e-12)
     said = document("explain", scene_file)
     mine = of_file.explain(0.02)
@@ -69,6 +71,9 @@ def test_stepping_by_hand_is_the_same_run():
     assert not np.array_equal(state["z"], before)  # a view: it shows the bed now
     assert np.array_equal(np.asarray(sim.trajectory.positions), np.asarray(whole.positions))
     assert np.shares_memory(sim.trajectory.positions[3], first.positions[3])
+    with pytest.raises(RuntimeError, match="has reached its 4 cycles; a scene with a larger time.cycles runs longer"):
+        sim.run(1)
+    assert len(sim.trajectory) == 40
     assert sim.settled["reached"] and 0 <= sim.contact_fraction <= 1
 
 
@@ -193,8 +198,8 @@ def test_an_interrupted_run_goes_on_to_the_same_bits():
         except KeyboardInterrupt:
             stops += 1
     assert stops == 3  # a callback is called at the beginning of each run
-    while len(sim.run(1)):
-        pass
+    while len(sim.trajectory) < 40:
+        sim.run(1)
     assert np.array_equal(np.asarray(sim.trajectory.positions), np.asarray(twincell.simulate(scene).positions))
 
 

@@ -121,7 +121,7 @@ def test_from_arrays_analyses_like_the_original(sim_file):
 
 
 def test_missing_beads_are_absent():
-    points = np.array([[[0, 0], [1, 0], [0.5, 0.866]], [[0, 0], [np.nan, 0], [0.5, 0.866]]])
+    points = np.array([[[0, 0], [1, 0], [0.5, 0.866]], [[0, 0], [np.nan, np.nan], [0.5, 0.866]]])
     t = twincell.Trajectory.from_arrays(points)
     assert np.isnan(t.positions[1][1]).all() and t.box.dimension == 2
     table = t.to_dataframe()
@@ -190,8 +190,9 @@ def test_observables_on_arrays():
     assert np.allclose(psi, 1, atol=1e-12)  # rows along x
     turned = twincell.hexatic_order(lattice[:, ::-1], box[::-1])
     assert np.allclose(turned, -1, atol=1e-12)  # rows along z: 6 times 90 degrees
-    assert (twincell.coordination(lattice, box) == 6).all()
-    assert (twincell.coordination(lattice, box, neighbours="delaunay") == 6).all()
+    assert (twincell.number_of_neighbours(lattice, box) == 6).all()
+    assert (twincell.coordination(lattice, box) == 6).all()  # the earlier name
+    assert (twincell.number_of_neighbours(lattice, box, neighbours="delaunay") == 6).all()
     order = twincell.bond_order(lattice, box)
     assert np.allclose(order["q6"], 0.74083, atol=1e-5)  # Steinhardt et al. 1983
     cells = twincell.voronoi(lattice, box)
@@ -199,7 +200,7 @@ def test_observables_on_arrays():
     bonds = twincell.neighbours(lattice, box)
     assert len(bonds["i"]) == 6 * len(lattice) and np.allclose(np.linalg.norm(bonds["bond"], axis=1), 1)
     # Open sides: a corner bead has fewer neighbours.
-    assert twincell.coordination(lattice).min() in (2, 3)
+    assert twincell.number_of_neighbours(lattice).min() in (2, 3)
     alone = twincell.hexatic_order(np.zeros((1, 2)))
     assert np.isnan(alone.real).all() and np.isnan(alone.imag).all()
     for words in ("abc", [[0, 0], [1]]):
@@ -270,8 +271,9 @@ def test_errors_of_options_have_the_sentence_of_the_program(sim_file):
     ({"positions": [[[0, 0], [1e12, 0]]]}, "cell: its x side goes from -0.5 to 1e+12"),
 ])
 def test_numbers_that_no_file_can_hold_are_refused(own, sentence):
-    with pytest.raises(twincell.InputError) as e:
+    with pytest.raises(ValueError) as e:
         twincell.Trajectory.from_arrays(own.pop("positions", np.zeros((1, 2, 2))), **own)
+    assert isinstance(e.value, twincell.ConfigError)
     assert sentence in str(e.value)
 
 
@@ -292,6 +294,69 @@ def test_arrays_that_say_something_else_are_refused(own, sentence):
     assert sentence in str(e.value)
 
 
+PLANE = np.column_stack([np.random.default_rng(8).uniform(0, 20, size=(50, 2)), np.zeros(50)])  # (x, y, 0)
+
+
+@pytest.mark.parametrize("call", [
+    lambda: twincell.hexatic_order(PLANE, [20, 20]), lambda: twincell.hexatic_order(PLANE, [20, 20, 20]),
+    lambda: twincell.hexatic_order(PLANE), lambda: twincell.bond_order(PLANE), lambda: twincell.voronoi(PLANE),
+    lambda: twincell.coordination(PLANE), lambda: twincell.neighbours(PLANE), lambda: twincell.analyze(PLANE, ["psi6"]),
+    lambda: twincell.analyze(np.stack([PLANE, PLANE]), ["psi6"], box=[20, 20, 20]),
+    lambda: twincell.Trajectory.from_arrays(PLANE[None]),
+    lambda: twincell.hexatic_order(PLANE, twincell.Box((0, 0, 0), (20, 20, 20), dimension=3)),
+])
+def test_points_of_the_plane_x_y_are_refused(call):
+    with pytest.raises(ValueError, match=r"have z = 0: give .*:2\]\) for a two-dimensional system"):
+        call()
+
+
+def test_a_layer_in_three_dimensions_needs_a_box():
+    box = twincell.Box((0, 0, -0.5), (20, 20, 0.5), ("periodic", "periodic", "open"), dimension=3)
+    flat = twincell.coordination(PLANE[:, :2], [20, 20])
+    assert np.array_equal(twincell.coordination(PLANE, box), flat)
+    assert len(twincell.neighbours(PLANE, box)["i"]) == flat.sum()
+    assert twincell.Trajectory.from_arrays(PLANE[None], box=box).box.dimension == 3
+    row = np.zeros((5, 3))
+    row[:, 0] = np.arange(5)  # beads in a row on the plate are no such plane
+    assert twincell.coordination(row).tolist() == [1, 2, 2, 2, 1]
+
+
+def test_periods_too_short_for_the_neighbours():
+    pair = np.array([[0, 0.0], [1, 0]])
+    for call in (twincell.coordination, twincell.hexatic_order, twincell.bond_order, twincell.neighbours):
+        with pytest.raises(ValueError, match="box: has the period 2 along x; neighbours within 1.2 need more than 2.4"):
+            call(pair, [2, 20])
+        call(pair, [2.5, 20])
+    with pytest.raises(ValueError, match="has the period 1 along y"):
+        twincell.coordination(np.array([[0, 0.0, 0], [1, 0.5, 2]]), [20, 1, 20])
+    with pytest.warns(UserWarning, match="the period along x, 2 sigma, is shorter than twice the reach of a neighbour"):
+        twincell.analyze(pair, ["psi6"], box=[2, 20])
+
+
+def test_infinite_and_partly_missing_points_are_refused():
+    for number, words in ((np.inf, "is at infinity"), (-np.inf, "is at infinity"), (np.nan, "is NaN in some components only")):
+        points = np.array([[0, 0], [1, number], [1, 0]])
+        with pytest.raises(ValueError, match=f"points: bead 1 {words}"):
+            twincell.coordination(points)
+        with pytest.raises(ValueError, match=f"positions: bead 1 of frame 0 {words}"):
+            twincell.Trajectory.from_arrays(points[None])
+    missing = np.array([[0, 0], [np.nan, np.nan], [1, 0]])
+    assert twincell.coordination(missing).tolist() == [1, 0, 1]
+
+
+def test_columns_of_a_table_are_taken_by_name():
+    pd = pytest.importorskip("pandas")
+    rng = np.random.default_rng(2)
+    points = rng.uniform(0, 6, size=(40, 2))
+    psi = twincell.hexatic_order(points)
+    for second in ("y", "z"):
+        table = pd.DataFrame({second: points[:, 1], "x": points[:, 0]})
+        assert np.array_equal(twincell.hexatic_order(table), psi, equal_nan=True)
+    three = rng.uniform(0, 3, size=(40, 3))
+    table = pd.DataFrame(three, columns=["x", "y", "z"])[["z", "x", "y"]]
+    assert np.array_equal(twincell.coordination(table), twincell.coordination(three))
+
+
 def test_wrapped_beads_are_unwrapped():
     rng = np.random.default_rng(3)
     walk = 5 + np.cumsum(rng.normal(0, 0.5, size=(40, 30, 2)), axis=0)
@@ -301,6 +366,10 @@ def test_wrapped_beads_are_unwrapped():
     moved = [np.diff(np.asarray(t.positions), axis=0) for t in (free, wrapped)]
     assert np.allclose(moved[0], moved[1], atol=1e-12)
     assert np.abs(np.diff(walk % 10, axis=0)).max() > 5
+    kept = twincell.Trajectory.from_arrays(walk % 10, box=box, unwrap=False)
+    assert np.array_equal(np.asarray(kept.positions)[:, :, [0, 2]], walk % 10)
+    msd = [twincell.analyze(walk % 10, ["msd"], box=[10, 10], unwrap=unwrap)["msd"].value[0] for unwrap in (True, False)]
+    assert msd[0] < 1 < msd[1]
 
 
 def test_a_foreign_file_is_not_replaced(tmp_path, sim_file):
@@ -379,8 +448,68 @@ def test_results_and_boxes_are_pickled(sim_file):
     assert again.provenance == results.provenance
     one = pickle.loads(pickle.dumps(results["T_g"]))
     assert one.value == results["T_g"].value and one.interval == results["T_g"].interval
-    box = twincell.Trajectory.open(sim_file).box
-    assert repr(pickle.loads(pickle.dumps(box))) == repr(box)
+    trajectory = twincell.Trajectory.open(sim_file)
+    box, drive = trajectory.box, trajectory.drive
+    assert pickle.loads(pickle.dumps(box)) == box and hash(pickle.loads(pickle.dumps(box))) == hash(box)
+    assert box != twincell.Box((0, 0, 0), (1, 1, 1)) and box != "box"
+    copied = pickle.loads(pickle.dumps(drive))
+    assert (copied.amplitude, copied.omega, copied.formula) == (drive.amplitude, drive.omega, drive.formula)
+    assert copied.displacement(0.3) == drive.displacement(0.3)
+
+
+def test_functions_are_pickled_and_have_signatures():
+    import inspect
+    import multiprocessing
+    frames = np.random.default_rng(4).uniform(0, 6, size=(3, 40, 2))
+    with multiprocessing.Pool(2) as pool:
+        many = pool.map(twincell.hexatic_order, frames)
+    assert all(np.array_equal(a, twincell.hexatic_order(b), equal_nan=True) for a, b in zip(many, frames))
+    for name in twincell.__all__:
+        thing = getattr(twincell, name)
+        if inspect.isfunction(thing):
+            assert pickle.loads(pickle.dumps(thing)) is thing, name
+            assert inspect.signature(thing).parameters or name in ("laws", "preset_names", "result_names", "version"), name
+    assert list(inspect.signature(twincell.hexatic_order).parameters) == ["points", "box", "neighbours", "cutoff", "cell_radius"]
+    assert inspect.signature(twincell.analyze).parameters["discard"].default == 0
+    for method in (twincell.Trajectory.open, twincell.Trajectory.from_arrays):
+        assert pickle.loads(pickle.dumps(method)) is method
+
+
+def test_results_are_formatted_and_asked_by_name(sim_file):
+    results = twincell.analyze(sim_file, ["q6", "phase"])
+    assert f"{results['q6']:.3f}" == f"{results['q6'].value:.3f}"
+    assert f"{results['phase']:>10}".strip() == results["phase"].value and str(results["q6"]) == f"{results['q6']}"
+    assert results.get("q6").value == results["q6"].value and results.get("q7") is None and results.get("q7", 1) == 1
+    absent = twincell.analyze(np.zeros((1, 1, 2)), ["voronoi_area"])["voronoi_area"]
+    with pytest.raises(ValueError, match="voronoi_area: is absent"):
+        f"{absent:.3f}"
+
+
+def test_phases_per_cycle_follow_from_the_phases():
+    t = twincell.Trajectory.from_arrays(np.zeros((3, 2, 2)), phase=[0, 2, 1], cycle=[0, 0, 1])
+    assert t.phases_per_cycle == 3
+
+
+def test_a_table_becomes_the_trajectory_again():
+    pytest.importorskip("pandas")
+    rng = np.random.default_rng(5)
+    for dimension in (2, 3):
+        points = rng.uniform(0, 5, size=(4, 6, dimension))
+        points[2, 3] = np.nan
+        t = twincell.Trajectory.from_arrays(
+            points, velocities=rng.normal(size=points.shape), radii=rng.uniform(0.4, 0.5, 6), masses=np.arange(1.0, 7),
+            tracers=[0, 1, 0, 0, 1, 0], phase=[0, 1, 0, 1], cycle=[0, 0, 1, 1], time=[0, 0.5, 1, 1.75], step=[3, 5, 8, 9])
+        table = t.to_dataframe()
+        again = twincell.Trajectory.from_dataframe(table.sample(frac=1, random_state=1), box=t.box)
+        assert np.array_equal(np.asarray(again.positions), np.asarray(t.positions), equal_nan=True)
+        here = np.isfinite(np.asarray(t.positions))
+        assert np.array_equal(np.asarray(again.velocities)[here], np.asarray(t.velocities)[here])
+        for column in ("time", "step", "phase", "cycle", "radii", "masses", "tracers"):
+            assert np.array_equal(getattr(again, column), getattr(t, column)), column
+        assert again.box == t.box and again.phases_per_cycle == 2
+    table.loc[0, "radius"] = 0.1
+    with pytest.raises(ValueError, match="radius: differs among the rows of particle 0"):
+        twincell.Trajectory.from_dataframe(table)
 
 
 def test_arrays_are_analysed():
@@ -394,6 +523,8 @@ def test_arrays_are_analysed():
     assert np.isfinite(results["g_r"].value).any()
     alone = twincell.analyze(points[0], ["g_r"], box=[20, 20])["g_r"].value
     assert np.array_equal(alone, twincell.analyze(points[:1], ["g_r"], box=[20, 20])["g_r"].value, equal_nan=True)
+    # A gas in a periodic box: the cells fill it.
+    assert results["voronoi_area"].value == pytest.approx(400 / 200, abs=1e-9)
     with pytest.raises(ValueError, match="box: is that of an array of points"):
         twincell.analyze(twincell.Trajectory.from_arrays(points), box=[20, 20])
     for wrong in (None, 3):
@@ -408,14 +539,14 @@ def test_masked_numbers_are_missing():
     masked.mask[14] = True
     missing = lattice.copy()
     missing[14] = np.nan
-    assert np.array_equal(twincell.coordination(masked), twincell.coordination(missing))
-    assert twincell.coordination(masked)[15] < twincell.coordination(lattice)[15]
+    assert np.array_equal(twincell.number_of_neighbours(masked), twincell.number_of_neighbours(missing))
+    assert twincell.number_of_neighbours(masked)[15] < twincell.number_of_neighbours(lattice)[15]
     t = twincell.Trajectory.from_arrays(np.ma.stack([masked, masked]))
     assert np.isnan(t.positions[1][14]).all() and np.isfinite(t.positions[1][13]).all()
 
 
 def test_frames_out_of_order_are_refused():
-    with pytest.raises(OSError, match="does not come after phase 1 of cycle 0 of frame 1"):
+    with pytest.raises(ValueError, match="does not come after phase 1 of cycle 0 of frame 1"):
         twincell.Trajectory.from_arrays(np.zeros((3, 1, 2)), phase=[0, 1, 0], cycle=[0, 0, 0], phases_per_cycle=2)
 
 
@@ -450,3 +581,12 @@ def test_stubs_name_everything():
     tree = ast.parse((Path(core.__file__).parent / "_core.pyi").read_text())
     named = {node.name for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
     assert {n for n in vars(core) if not n.startswith("__")} <= named
+    # Every name that a signature uses is defined.
+    import builtins
+    known = named | set(dir(builtins)) | {alias.name for node in tree.body if isinstance(node, ast.Import) for alias in node.names}
+    for function in (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)):
+        annotations = [a.annotation for a in function.args.args + function.args.kwonlyargs] + [function.returns]
+        for node in (n for a in annotations if a is not None for n in ast.walk(a)):
+            assert not isinstance(node, ast.Name) or node.id in known, (function.name, node.id)
+    stub = (Path(core.__file__).parent / "_core.pyi").read_text()
+    assert stub.count("os.PathLike") == stub.count("str | os.PathLike[str]") > 0

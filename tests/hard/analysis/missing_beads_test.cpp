@@ -1,4 +1,4 @@
-// Undeterminable results are absent with a reason, never 0 (H50, H52, H53, H62).
+// Undeterminable results are absent with a reason, never 0.
 #include <gtest/gtest.h>
 
 #include <cmath>

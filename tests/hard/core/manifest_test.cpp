@@ -45,7 +45,7 @@ TEST(Manifest, AFileThatHasNotChangedIsReadOnce) {
   EXPECT_LT(bytes_read() - before, size);
 }
 
-TEST(Manifest, AFileThatChangesIsToldAlthoughItsSizeAndTimeAreTheOld) {
+TEST(Manifest, ChangedFileIsDetectedDespiteEqualSizeAndTime) {
   const TemporaryFolder folder;
   put_file(folder / "a", "old bytes");
   // A file whose modification time is set to the distant past.

@@ -91,7 +91,7 @@ TEST_F(SyncedOutput, EveryFileOfAFolderIsOnDiskBeforeTheFolderHasItsName) {
   EXPECT_FALSE(syncs().empty() || !syncs().back().placed) << "the name itself is synced last";
 }
 
-TEST_F(SyncedOutput, SoIsEveryFileThatReplacesAnother) {
+TEST_F(SyncedOutput, ReplacingFilesAreOnDiskBeforeTheyHaveTheirNames) {
   write_folder("out", "one");
   put_file(folder_ / "out/foreign.txt", "mine");  // so that the folders are not exchanged in one step
   syncs().clear();

@@ -32,7 +32,7 @@ cv::Mat pattern(int width, int height, int offset = 0) {
 
 }  // namespace
 
-TEST(NaturalOrder, IsThatOfAPerson) {
+TEST(NaturalOrder, SortsNumbersNumerically) {
   EXPECT_TRUE(natural_less("frame_2.png", "frame_10.png"));
   EXPECT_FALSE(natural_less("frame_10.png", "frame_2.png"));
   EXPECT_TRUE(natural_less("a9b10", "a9b11"));

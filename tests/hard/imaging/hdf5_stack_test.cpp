@@ -150,7 +150,7 @@ TEST(Hdf5Stack, Spoilt) {
 }
 
 // Blank frames compress to a thousandth: some hundred kilobytes may claim a quarter of a gigabyte.
-TEST(Hdf5Stack, WhatACompressedDatasetClaims) {
+TEST(Hdf5Stack, LargeCompressedDatasetsAreReadOrRefused) {
   const TemporaryFolder folder;
   const std::string path = folder / "a.h5";
   const auto blank = [&](const std::vector<hsize_t>& shape, const std::vector<hsize_t>& chunk) {

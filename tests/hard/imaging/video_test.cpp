@@ -159,7 +159,7 @@ TEST(Video, ACutFilmIsRefusedWithoutAnAddress) {
   EXPECT_EQ(sentence.find("0x"), std::string::npos) << sentence;
 }
 
-TEST(Video, ANameThatAShellOrFfmpegWouldMistake) {
+TEST(Video, SpecialCharactersInNamesAreHarmless) {
   if (!kFfmpeg) GTEST_SKIP() << "ffmpeg is not installed.";
   const TemporaryFolder folder;
   put(folder / "raw", planes(64, 48, 2, 8, values(8)));
@@ -169,7 +169,7 @@ TEST(Video, ANameThatAShellOrFfmpegWouldMistake) {
   EXPECT_EQ(read_all(odd).size(), 2U);
 }
 
-TEST(Video, WhatNoneCanRead) {
+TEST(Video, UndecodableFilesAreRefused) {
   const TemporaryFolder folder;
   std::string noise(5005, '\x7f');
   noise.replace(0, 4, "\0\x01\x02\x03", 4);

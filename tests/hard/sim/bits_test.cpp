@@ -1,4 +1,4 @@
-// Changes that must not affect the bits or the speed of a run (VERIFICATION H12, H22, H25-H27, H29).
+// Changes that must not affect the bits or the speed of a run.
 
 #include <gtest/gtest.h>
 
@@ -51,11 +51,11 @@ std::vector<Frame> program(const std::vector<std::string>& more) {
   return frames_of(folder / "out.h5");
 }
 
-TEST(Bits, H12_TheSameSceneTwiceIsTheSameRun) {
+TEST(Bits, SameSceneGivesTheSameBits) {
   expect_same_frames(program({}), program({}));
 }
 
-TEST(Bits, H12_OnlyASeededPerturbationMakesEnsembles) {
+TEST(Bits, OnlyASeededPerturbationMakesEnsembles) {
   const std::string little = "start.perturbation=1e-9";
   const auto one = program({"--set", little, "--seed", "4"}),
              again = program({"--set", little, "--seed", "4"}),
@@ -64,7 +64,7 @@ TEST(Bits, H12_OnlyASeededPerturbationMakesEnsembles) {
   EXPECT_NE(one[0].position, other[0].position);
 }
 
-TEST(Bits, H16_ANarrowPeriodicCellAgreesWithTheOracle) {  // 2.5 diameters: no second image is within range
+TEST(Bits, NarrowPeriodicCellAgreesWithTheOracle) {  // 2.5 diameters: no second image is within range
   for (const char* width : {"2.5", "2.6", "5"}) {
     const std::vector<std::string> set = {"beads.count=20", "cell.sides=periodic",
                                           std::string("cell.width=") + width};
@@ -74,7 +74,7 @@ TEST(Bits, H16_ANarrowPeriodicCellAgreesWithTheOracle) {  // 2.5 diameters: no s
   }
 }
 
-TEST(Bits, H22_AListMissesNoContact) {  // lists rebuilt at every step and only when due, 1e5 steps
+TEST(Bits, ListMissesNoContact) {  // lists rebuilt at every step and only when due, 1e5 steps
   ShakenBed due, always;
   always.kernel->rebuild_every(1);
   for (int k = 0; k < 100; ++k) {
@@ -86,7 +86,7 @@ TEST(Bits, H22_AListMissesNoContact) {  // lists rebuilt at every step and only 
   EXPECT_GT(always.kernel->list_builds(), 100 * due.kernel->list_builds());
 }
 
-TEST(Bits, H25_SortingInMemoryChangesNothing) {  // the oracle never sorts; output is in bead order
+TEST(Bits, IndependentOfTheOrderInMemory) {  // the oracle never sorts; output is in bead order
   ShakenBed sorted, unsorted({}, SolverKind::all_pairs);
   const double first = sorted.system.beads[0].radius;
   sorted.advance(30000), unsorted.advance(30000);
@@ -94,12 +94,12 @@ TEST(Bits, H25_SortingInMemoryChangesNothing) {  // the oracle never sorts; outp
   EXPECT_EQ(sorted.system.beads[0].radius, first);
 }
 
-TEST(Bits, H26_ThreadsChangeNothing) {
+TEST(Bits, IndependentOfTheNumberOfThreads) {
   const auto one = program({"--threads", "1"});
   for (const char* threads : {"2", "3", "8"}) expect_same_frames(one, program({"--threads", threads}));
 }
 
-TEST(Bits, H27_WidthsOfVectorsChangeNothing) {
+TEST(Bits, IndependentOfTheWidthOfVectors) {
   ShakenBed scalar({}, SolverKind::scalar);
   scalar.advance(30000);
   for (const SolverKind kind : {SolverKind::avx2, SolverKind::avx512}) {
@@ -117,7 +117,7 @@ bool any_subnormal(const System& s) {
   return false;
 }
 
-TEST(Bits, H29_ASettledBedIsNotSlowedBySubnormals) {
+TEST(Bits, SettledBedIsNotSlowedBySubnormals) {
   // Drag reduces a velocity to 1e-308 in 71 t0, and then through the subnormal numbers to 0.
   ShakenBed bed({"cell.plate_drag=10", "contact.mu=0", "drive.gamma=0", "cell.sides=periodic"});
   const auto seconds = [&](std::int64_t steps) {  // the fastest of five runs

@@ -1,5 +1,4 @@
-// Contacts for which a formula could divide by zero, or lose history or keep stale history (VERIFICATION
-// H1-H4, H15, H17, H24, H31).
+// Contacts for which a formula could divide by zero, or lose history or keep stale history.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +29,7 @@ bool finite(const System& s) {
   return true;
 }
 
-TEST(Contact, H1_CoincidentCentresStopByTheOverlapBound) {
+TEST(Contact, CoincidentCentresStopByTheOverlapBound) {
   for (const auto& cell : {kNoGravity, kSpaceNoGravity})
     for (const SolverKind kind : kKinds) {
       if (!available(kind)) continue;
@@ -48,7 +47,7 @@ TEST(Contact, H1_CoincidentCentresStopByTheOverlapBound) {
     }
 }
 
-TEST(Contact, H1_LanesThatHoldNoPairStayOutOfIt) {  // three beads in vectors of up to eight
+TEST(Contact, UnusedLanesDoNotAffectResults) {  // three beads in vectors of up to eight
   for (const SolverKind kind : kKinds) {
     if (!available(kind)) continue;
     Bench b("", 50, kind);
@@ -62,7 +61,7 @@ TEST(Contact, H1_LanesThatHoldNoPairStayOutOfIt) {  // three beads in vectors of
   }
 }
 
-TEST(Contact, H2_NoTangentialVelocityNoTangentialForce) {
+TEST(Contact, NoTangentialForceWithoutTangentialVelocity) {
   for (const auto& cell : {kNoGravity, kSpaceNoGravity})
     for (const char* law : {"tangential = \"dashpot\"\ngamma_t = 100.0\n", "gamma_t = 100.0\n",
                             "tangential = \"spring-limited\"\ngamma_t = 100.0\n",
@@ -102,7 +101,7 @@ void expect_limits(const Law& law) {
     }
 }
 
-TEST(Contact, H3_CoulombLimitAtNoNormalForceAndInThePull) {
+TEST(Contact, CoulombLimitAtZeroAndAttractiveNormalForce) {
   expect_limits(SpringSlider{1e4, {100, 0, 0}, 0.6});
   expect_limits(SpringLimitedSlider{{1e4, {100, 0, 0}, 0.6}});
   expect_limits(ForceClippedSlider{{1e4, {100, 0, 0}, 0.6}});
@@ -118,7 +117,7 @@ TEST(Contact, H3_CoulombLimitAtNoNormalForceAndInThePull) {
   EXPECT_DOUBLE_EQ(kept.c[0], 1e-3 + 0.5 * 1e-5);  // only the force is clipped
 }
 
-TEST(Contact, H4_EveryContactBeginsAnew) {  // a bead that bounces along a rough floor, 1e6 steps
+TEST(Contact, EveryContactBeginsWithoutHistory) {  // a bead that bounces along a rough floor, 1e6 steps
   Bench b("[cell]\nsides = \"periodic\"\n[contact]\ngamma_n = 0.0\ngamma_t = 0.0\n", 20.37);
   b.add(3, 0.502, 1, 0);
   int contacts = 0;
@@ -157,7 +156,7 @@ System drifting_collision(double x, double image, std::int64_t rebuild_every) {
   return b.system;
 }
 
-TEST(Contact, H15_HistoryCrossesThePeriodicBoundary) {
+TEST(Contact, HistoryCrossesThePeriodicBoundary) {
   // The centres are 0.968 apart in z at first touch, after 0.032 t0. The contact lasts 0.022, and during it
   // the contact point passes x = 4.
   for (const std::int64_t rebuild_every : {0, 1, 7})
@@ -177,7 +176,7 @@ TEST(Contact, H15_HistoryCrossesThePeriodicBoundary) {
     }
 }
 
-TEST(Contact, H17_ABeadInACornerIsInBalance) {
+TEST(Contact, BeadInACornerIsInBalance) {
   // Soft springs: at k_n = 1e6 the last bit of a position changes the force by 1e-10.
   Bench b(
       "[cell]\ngravity = [-0.6, -0.8]\n[contact]\nk_n = 1e3\ngamma_n = 20.0\ngamma_t = 20.0\nk_t = 300.0\n");
@@ -195,7 +194,7 @@ TEST(Contact, H17_ABeadInACornerIsInBalance) {
   EXPECT_EQ(walls, 2);
 }
 
-TEST(Contact, H24_LabelsOfBeadsDoNotMatter) {
+TEST(Contact, IndependentOfTheLabelsOfBeads) {
   ShakenBed as_drawn, relabelled;
   std::reverse(relabelled.system.beads.begin(), relabelled.system.beads.end());
   as_drawn.advance(12000), relabelled.advance(12000);
@@ -210,7 +209,7 @@ TEST(Contact, H24_LabelsOfBeadsDoNotMatter) {
   EXPECT_LE(worst, 1e-12);
 }
 
-TEST(Contact, H31_ALoneBeadFliesAParabola) {
+TEST(Contact, LoneBeadFliesAParabola) {
   for (const SolverKind kind : kKinds) {
     if (!available(kind)) continue;
     Bench b("", 50.37, kind);

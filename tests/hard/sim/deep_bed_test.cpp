@@ -1,4 +1,4 @@
-// A deep bed comes to rest (VERIFICATION H28).
+// A deep bed comes to rest.
 
 #include <gtest/gtest.h>
 
@@ -48,7 +48,7 @@ struct DeepBed {
   }
 };
 
-TEST(DeepBed, H28_EightyLayersRest) {
+TEST(DeepBed, EightyLayersRest) {
   DeepBed bed;
   EXPECT_GE(std::max_element(bed.system.beads.begin(), bed.system.beads.end(),
                              [](const Bead& a, const Bead& b) { return a.z < b.z; })

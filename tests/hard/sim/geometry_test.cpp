@@ -1,4 +1,4 @@
-// Overlapping starts, unequal sizes, tall boxes, invalid numbers (VERIFICATION H5, H8, H21, H23, H30, H32).
+// Overlapping starts, unequal sizes, tall boxes, invalid numbers.
 
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -33,7 +33,7 @@ struct Table {
   }
 };
 
-TEST(Overlaps, H1_H5_AreRefusedAtTheStartByName) {
+TEST(Overlaps, AreRefusedAtTheStartByName) {
   Table t;
   const auto start = [&](const std::string& csv, const std::vector<std::string>& set = {}) {
     return [&t, csv, set] { Simulation(t.scene(csv, set)); };
@@ -51,7 +51,7 @@ TEST(Overlaps, H1_H5_AreRefusedAtTheStartByName) {
                               "start.relax: the beads cannot be pushed apart");
 }
 
-TEST(Overlaps, H5_RelaxedBeadsAreNotLaunched) {
+TEST(Overlaps, RelaxedBeadsAreNotLaunched) {
   // Ninety beads in a space for forty, some almost at the same position.
   std::string csv = "x,z\n";
   std::mt19937_64 engine(3);
@@ -121,7 +121,7 @@ System unlike(SolverKind kind, std::string* said = nullptr) {
   return s;
 }
 
-TEST(Sizes, H8_UnlikeBeadsAgreeWithTheOracle) {
+TEST(Sizes, UnequalBeadsAgreeWithTheOracle) {
   const System list = unlike(SolverKind::best);
   EXPECT_TRUE(same_bits(list, unlike(SolverKind::all_pairs)));
   double fastest = 0;  // the small discs were hit
@@ -129,7 +129,7 @@ TEST(Sizes, H8_UnlikeBeadsAgreeWithTheOracle) {
   EXPECT_GT(fastest, 0.1);
 }
 
-TEST(Sizes, H8_TheLightestBeadSetsTheStepAndTheUsualOneTheBound) {
+TEST(Sizes, LightestBeadSetsTheStepAndMedianBeadTheOverlapBound) {
   const auto plan_of = [](const std::vector<std::string>& set) {
     return make_plan(read_scene_text(
         "preset = \"fortini-huang-2015\"\n[beads]\ncount = 9\n[drive]\ngamma = 1\n", "s", set));
@@ -153,7 +153,7 @@ std::size_t bytes_in_use() {
   return info.uordblks + info.hblkhd;
 }
 
-TEST(Sizes, H8_ALargeBeadDoesNotMakeTheSmallOnesListsLong) {
+TEST(Sizes, LargeBeadDoesNotLengthenTheListsOfSmallBeads) {
   ShakenBed small({"beads.count=4000", "cell.width=400", "cell.lid=wall", "cell.height=300"}),
       mixed({"beads.count=4000", "cell.width=400", "cell.lid=wall", "cell.height=300",
              "beads.intruder.radius=50", "beads.intruder.z=150"});
@@ -167,7 +167,7 @@ TEST(Sizes, H8_ALargeBeadDoesNotMakeTheSmallOnesListsLong) {
   EXPECT_LT(beside, 2 * alone + 500);
 }
 
-TEST(Input, H21_BadBeadsAreRefusedByName) {
+TEST(Input, InvalidBeadsAreRefusedByName) {
   Table t;
   for (const char* column : {"x", "z", "vx", "vz", "spin", "radius", "mass"})
     for (const char* value : {"nan", "inf", "-inf", "", "one", "1e999", "0x10"}) {
@@ -196,7 +196,7 @@ TEST(Input, H21_BadBeadsAreRefusedByName) {
   EXPECT_EQ(Simulation(t.scene("x,z\n", {"drive.amplitude=0.5"})).system().beads.size(), 0U);
 }
 
-TEST(Lists, H23_ABedThatRidesOnItsPlateKeepsItsList) {
+TEST(Lists, BedThatMovesWithItsPlateKeepsItsList) {
   const auto lists_per_cycle = [](const char* gamma) {
     Simulation run(
         read_scene_text("preset = \"fortini-huang-2015\"\n[beads]\ncount = 400\n[time]\n"
@@ -217,7 +217,7 @@ TEST(Lists, H23_ABedThatRidesOnItsPlateKeepsItsList) {
   EXPECT_LT(lists_per_cycle("2"), 0.5 * 20000 / 45);
 }
 
-TEST(TallBoxes, H30_EmptySpaceCostsNothing) {
+TEST(TallBoxes, EmptySpaceCostsNothing) {
   for (const char* height : {"1e5", "1e9"}) {
     ShakenBed bed({"beads.count=200", std::string("cell.height=") + height, "cell.lid=wall"});
     bed.system.beads[3].z = 1e4, bed.system.beads[7].z = 100, bed.system.beads[9].z = 9.9e4;
@@ -230,7 +230,7 @@ TEST(TallBoxes, H30_EmptySpaceCostsNothing) {
   }
 }
 
-TEST(Drive, H32_APlateAtRestOrBelowGammaOneIsFine) {
+TEST(Drive, PlateAtRestOrBelowGammaOneRuns) {
   for (const char* gamma : {"0", "0.5", "0.99"}) {
     Simulation run(
         read_scene_text("preset = \"fortini-huang-2015\"\n[beads]\ncount = 40\n[time]\n"

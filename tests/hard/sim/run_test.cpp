@@ -30,7 +30,7 @@ TEST(Plan, PaperOneStep) {
   EXPECT_TRUE(plan.rotation && plan.history);
 }
 
-TEST(Run, H21_NoBeadsAndOneBeadRun) {
+TEST(Run, NoBeadsAndOneBeadRun) {
   for (const char* count : {"0", "1"}) {
     const Scene scene = read_scene_text(
         "preset = \"fortini-huang-2015\"\n[beads]\ncount = " + std::string(count) +
@@ -63,7 +63,7 @@ TEST(Run, TwinContinuesFromAnyFrame) {
   EXPECT_TRUE(twin.settled().reached);
 }
 
-TEST(Run, H20_StopsWithStepBeadAndCause) {
+TEST(Run, ErrorNamesStepBeadAndCause) {
   const Scene scene = read_scene_text(
       "preset = \"fortini-huang-2015\"\n[beads]\ncount = 10\n[contact]\nk_n = 1e3\ngamma_n = 1.0\ntangential "
       "= \"none\"\n"
@@ -82,7 +82,7 @@ TEST(Run, H20_StopsWithStepBeadAndCause) {
   EXPECT_GT(out.n_frames(), 0U);  // the frames up to that step were delivered
 }
 
-TEST(Run, ANumberThatIsNoneIsFoundInItsStep) {
+TEST(Run, NaNStopsRunInSameStep) {
   Bench b("[cell]\ngravity = 1.0\n");
   b.add(5, 3, 0, 0);
   b.add(9, 3, 0, 0);
@@ -97,7 +97,7 @@ TEST(Run, ANumberThatIsNoneIsFoundInItsStep) {
   }
 }
 
-TEST(Run, ABeadAtTheLidSaysSo) {
+TEST(Run, BeadAtTheCeilingIsReported) {
   const Scene scene = read_scene_text(
       "preset = \"fortini-huang-2015\"\n[beads]\ncount = 20\n[cell]\nheight = 2.0\n[drive]\ngamma = 4.0\n"
       "[time]\nsteps_per_contact = 10\ndiscard = 0\ncycles = 2\n",
@@ -112,7 +112,7 @@ TEST(Run, ABeadAtTheLidSaysSo) {
   }
 }
 
-TEST(Run, H20_TheBoundIsTheScenes) {
+TEST(Run, OverlapBoundIsThatOfTheScene) {
   const std::string soft =
       "preset = \"fortini-huang-2015\"\n[beads]\ncount = 20\n[cell]\nwidth = 10.0\n[contact]\nk_n = 1e4\n"
       "[drive]\ngamma = 2.0\n[time]\nsteps_per_contact = 20\ndiscard = 0\ncycles = 2\n";
@@ -150,8 +150,8 @@ struct Crystal {
   }
 };
 
-TEST(Run, H12_ACoMovingCrystalSlipsExactlyNever) {  // region A1 of the first paper, below 10 sigma
-  constexpr double kSlip = 0.5;                     // sigma between neighbours, from cycle to cycle
+TEST(Run, CoMovingCrystalHasZeroSlip) {  // region A1 of the first paper, below 10 sigma
+  constexpr double kSlip = 0.5;          // sigma between neighbours, from cycle to cycle
   for (const char* gamma : {"0.9", "1.5", "2.2"}) {
     const Crystal bed({std::string("drive.gamma=") + gamma});
     int slips = 0;
@@ -165,7 +165,7 @@ TEST(Run, H12_ACoMovingCrystalSlipsExactlyNever) {  // region A1 of the first pa
   }
 }
 
-TEST(Run, H13_AnAbruptStartIsWarnedOfAndBreaksTheCrystal) {
+TEST(Run, AbruptStartGivesAWarningAndBreaksTheCrystal) {
   const auto warned = [](const Simulation& run) {
     for (const std::string& w : run.warnings())
       if (w.find("the drive starts with a blow: ") != std::string::npos) return true;
@@ -200,7 +200,7 @@ TEST(Run, H13_AnAbruptStartIsWarnedOfAndBreaksTheCrystal) {
   EXPECT_GT(abrupt, 2 * comoving);
 }
 
-TEST(Run, H35_SettlingEndsAndSaysWhatWasLeft) {
+TEST(Run, SettlingEndsAndReportsTheRemainingEnergy) {
   // Beads without static friction, dropped from a tall column.
   Simulation run(read_scene_text("preset = \"bhateja-2016-rough-2d\"\n[drive]\nk_m = 2.0\n", "s",
                                  {"start.settle_limit=1"}));
@@ -211,7 +211,7 @@ TEST(Run, H35_SettlingEndsAndSaysWhatWasLeft) {
   EXPECT_NE(run.warnings()[0].find("when start.settle_limit = 1 ended its settling"), std::string::npos);
 }
 
-TEST(Run, H36_PeriodTwoIsAveragedOverAnEvenNumberOfCycles) {
+TEST(Run, PeriodTwoIsAveragedOverAnEvenNumberOfCycles) {
   // A rigid bed that is lifted by 1 at phase 5 of every other cycle. The mean lift over two of three cycles
   // is 1/2; over all three it would be 1/3.
   const MemoryTrajectory flat = test::rigid_bed({.gamma = 0.9, .cycles = 3});
@@ -227,7 +227,7 @@ TEST(Run, H36_PeriodTwoIsAveragedOverAnEvenNumberOfCycles) {
   EXPECT_NEAR(s_k.values[5] - s_k.values[4], 0.5, 1e-12);
 }
 
-TEST(Run, H37_TheShareOfTimeInContactIsReported) {
+TEST(Run, ShareOfTimeInContactIsReported) {
   // One elastic bead between floor and lid: in each passage of the gap it is in contact for t_c of the wall.
   const auto fraction = [](const char* height, const char* count) {
     Simulation run(read_scene_text(
@@ -254,7 +254,7 @@ TEST(Run, H37_TheShareOfTimeInContactIsReported) {
   EXPECT_LT(fraction("9", "1").first, 0.1 * measured);
 }
 
-TEST(Run, H37_H38_TheProgramSaysShareOfContactAndStart) {
+TEST(Run, ProgramReportsShareOfContactAndStart) {
   const TemporaryFolder folder;
   // Just above Gamma = 1, a bed of the second paper keeps its initial packing for a long time. The output
   // reports each of the two starts.
@@ -277,7 +277,7 @@ TEST(Run, H37_H38_TheProgramSaysShareOfContactAndStart) {
   }
 }
 
-TEST(Run, H18_AFailedRunKeepsItsFrames) {
+TEST(Run, FailedRunKeepsItsFrames) {
   const TemporaryFolder folder;
   std::ofstream(folder / "scene.toml")
       << "preset = \"fortini-huang-2015\"\n[beads]\ncount = 50\n[drive]\ngamma = "

@@ -2,6 +2,8 @@
 
 #include "sim/scene/scene.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,7 +45,7 @@ Scene good(const std::vector<std::string>& set) {
   return read_scene_text(kGood, "scene.toml", set);
 }
 
-TEST(Scene, GoodOnesPass) {
+TEST(Scene, ValidScenesAreAccepted) {
   EXPECT_EQ(complaint(kGood), "accepted");
   EXPECT_EQ(complaint("preset = \"bhateja-2016-rough-2d\"\n[drive]\nk_m = 5.0\n"), "accepted");
   const Scene s = good({"drive.gamma=1.8", "start.kind=random"});
@@ -62,7 +64,7 @@ TEST(Scene, ComplaintsNameLineKeyValueAndBound) {
   expect_complaint(kGood + "[time]\nintegrator = \"euler\"\n",
                    "'euler' is not one of split, verlet, predicted");
   expect_complaint(kGood + "[start]\nkind = \"pile\"\n",
-                   "'pile' is not one of crystal_a, crystal_b, random, trajectory, table");
+                   fmt::format("'pile' is not one of {}", fmt::join(words_of(kStarts), ", ")));
   expect_complaint(kGood + "[start]\nkind = \"trajectory\"\n",
                    "start.from: a start from a trajectory needs the name of its file");
   expect_complaint(kGood + "[start]\nkind = \"table\"\n",
@@ -121,7 +123,7 @@ TEST(Scene, TheStepFollowsTheSpeedsOfTheStart) {
   EXPECT_LT(step("5.0"), step("1.0"));
 }
 
-TEST(Scene, H21_NumbersThatCannotBe) {
+TEST(Scene, NumbersOutOfRangeAreRefused) {
   for (const char* key :
        {"cell.width", "cell.height", "cell.gravity", "cell.tilt", "cell.side_tilt", "cell.plate_drag",
         "beads.radius", "beads.mass", "beads.layers", "drive.amplitude", "drive.omega", "drive.ramp_cycles",
@@ -180,7 +182,7 @@ TEST(Cell, LidAndPeriodAlongZNeedAHeight) {
                    "cell.lid: contradicts cell.bottom");
 }
 
-TEST(Cell, H16_PeriodsLeaveNoSecondImageInReach) {
+TEST(Cell, PeriodsLeaveNoSecondImageInReach) {
   const std::string periodic = kGood + "[cell]\nsides = \"periodic\"\nwidth = ";
   expect_complaint(periodic + "2.4\n",
                    "scene.toml:8:9: cell.width: a bead would meet two images of another: a period of 2.4 is "
@@ -212,7 +214,7 @@ TEST(Cell, GravityNeedsAWallThatCarries) {
                    "cell.tilt: cell.gravity already gives a direction");
 }
 
-TEST(Cell, H32_WithoutGravityNothingMayBeOpen) {
+TEST(Cell, WithoutGravityOpenCellsAreRefused) {
   const std::string still =
       "preset = \"fortini-huang-2015\"\n[beads]\ncount = 5\n[drive]\namplitude = 0.5\n[cell]\ngravity = "
       "0.0\n";
@@ -398,7 +400,7 @@ TEST(Contact, KeysThatTheLawDoesNotReadAreRefused) {
 }
 
 // A value that the plan drops by itself is not an error of the user.
-TEST(Contact, SmoothBeadsMayBeSaidInBothWays) {
+TEST(Contact, SmoothBeadsHaveTwoSpellings) {
   EXPECT_EQ(complaint(kGood, {"contact.mu=0"}), "accepted");  // the preset's k_t and gamma_t are read
   EXPECT_EQ(complaint(kGood, {"contact.mu=0", "contact.k_t=2e4"}), "accepted");
   EXPECT_EQ(complaint(kGood, {"contact.tangential=none", "contact.mu=0"}), "accepted");
@@ -465,7 +467,7 @@ TEST(Scene, SeedsAreNeverRounded) {
         << complaint(kGood + "[start]\nseed = " + std::string(seed) + "\n");
 }
 
-TEST(Scene, AStartsFileLiesBesideTheScene) {
+TEST(Scene, StartFileIsRelativeToScene) {
   const std::string text = kGood + "[start]\nkind = \"table\"\nfrom = \"b/a.csv\"\n";
   EXPECT_EQ(read_scene_text(text, "s", {}, "/x/y").from, "/x/y/b/a.csv");
   EXPECT_EQ(read_scene_text(text, "s").from, "b/a.csv");

@@ -1,5 +1,4 @@
-// Time steps that are too long, too short or too many, and the clock (VERIFICATION H6, H7, H9-H11, H14, H18,
-// H19, H33).
+// Time steps that are too long, too short or too many, and the clock.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +33,7 @@ bool has_warning(const Plan& plan, const std::string& wanted) {
   return false;
 }
 
-TEST(TimeStep, H6_CoarseStepsAreWarnedOfOrRefused) {
+TEST(TimeStep, CoarseStepsGiveAWarningOrAreRefused) {
   EXPECT_TRUE(plan_of({"time.steps_per_contact=20"}).warnings.empty());
   EXPECT_TRUE(has_warning(plan_of({"time.steps_per_contact=19"}), "time.steps_per_contact = 19 is below 20"));
   expect_refusal<ConfigError>([] { good({"time.steps_per_contact=5"}); },
@@ -68,7 +67,7 @@ TEST(TimeStep, OfMindlinsSpringWithALinearNormalLaw) {
       << "Hertz's stiffness grows alike";
 }
 
-TEST(TimeStep, UnstatedItIsTheFrontsAndStandsInTheResolvedScene) {
+TEST(TimeStep, DefaultIsWrittenToResolvedScene) {
   const struct {
     std::vector<std::string> set;
     const char* integrator;
@@ -115,13 +114,13 @@ RelaxationResult rest(const char* n) {
       .settled();
 }
 
-TEST(TimeStep, H6_ACrystalRestsOrTheStepIsCalledUnstable) {
+TEST(TimeStep, CrystalRestsOrTheStepIsReportedUnstable) {
   for (const char* n : {"20", "10", "5"}) EXPECT_TRUE(rest(n).reached) << n;
   for (const char* n : {"2", "1.5", "1"})
     expect_refusal<RunError>([&] { rest(n); }, "unstable step: ", "raise time.steps_per_contact");
 }
 
-TEST(TimeStep, H7_TheFastestRateSetsTheStep) {
+TEST(TimeStep, FastestRateSetsTheStep) {
   const double usual = plan_of({}).dt;
   const struct {
     std::vector<std::string> set;
@@ -153,7 +152,7 @@ TEST(TimeStep, H7_TheFastestRateSetsTheStep) {
   }
 }
 
-TEST(TimeStep, H9_StiffSpringsKeepTheirRestitution) {
+TEST(TimeStep, StiffSpringsKeepTheirRestitution) {
   const std::string stiff = "[contact]\nk_n = 1e9\n";
   const Bench bench(kNoGravity + stiff);
   const double asked = std::get<LinearSpringDashpot>(bench.plan.laws->bead.normal)
@@ -167,7 +166,7 @@ TEST(TimeStep, H9_StiffSpringsKeepTheirRestitution) {
   EXPECT_TRUE(has_warning(plan_of({"contact.k_n=1e9", "time.steps_per_contact=50"}), "a cycle takes 4.4"));
 }
 
-TEST(TimeStep, H10_OverdampedContactsHaveAFiniteStep) {
+TEST(TimeStep, OverdampedContactsHaveAFiniteStep) {
   for (const char* gamma : {"2828.0", "2830.0", "1e5"}) {
     const Plan plan = plan_of({std::string("contact.gamma_n=") + gamma});
     EXPECT_TRUE(std::isfinite(plan.dt) && plan.dt > 0) << gamma;
@@ -179,12 +178,12 @@ TEST(TimeStep, H10_OverdampedContactsHaveAFiniteStep) {
   }
 }
 
-TEST(TimeStep, H10_NoRestitutionIsRefusedAndCriticalDampingSuggested) {
+TEST(TimeStep, ZeroRestitutionIsRefusedAndCriticalDampingSuggested) {
   expect_refusal<ConfigError>([] { plan_of({"contact.restitution=0"}); },
                               "contact.restitution: 0 is out of range", "gamma_n = 2 sqrt(k_n/m_eff)");
 }
 
-TEST(TimeStep, H11_RestitutionOneAndBeyond) {
+TEST(TimeStep, RestitutionOneIsAcceptedAndMoreRefused) {
   EXPECT_EQ(
       std::get<LinearSpringDashpot>(plan_of({"contact.restitution=1"}).laws->bead.normal).damping.eta(0.5),
       0);
@@ -193,7 +192,7 @@ TEST(TimeStep, H11_RestitutionOneAndBeyond) {
                                 "contact.restitution: ");
 }
 
-TEST(TimeStep, H14_TimeIsAStepCount) {
+TEST(TimeStep, TimeIsAStepCount) {
   System s = make_system(good({}), plan_of({}));
   // The same phase in the first period and after 1e8 and 1e15 steps gives the same bits.
   for (const std::int64_t far : {std::int64_t{100'000'000}, std::int64_t{1'000'000'000'000'000}}) {
@@ -209,7 +208,7 @@ TEST(TimeStep, H14_TimeIsAStepCount) {
   }
 }
 
-TEST(TimeStep, H14_EnergyHasNoDriftIn1e8Steps) {  // an elastic bead between floor and lid
+TEST(TimeStep, EnergyHasNoDriftIn1e8Steps) {  // an elastic bead between floor and lid
   Bench b(
       "[cell]\ngravity = 0.0\nheight = 1.02\nlid = \"wall\"\n[contact]\ngamma_n = 0.0\ntangential = "
       "\"none\"\n",
@@ -235,7 +234,7 @@ TEST(TimeStep, H14_EnergyHasNoDriftIn1e8Steps) {  // an elastic bead between flo
   EXPECT_LE(std::abs(last / first - 1), 5e-4);
 }
 
-TEST(TimeStep, H18_APlateTooFastForTheStepIsRefused) {
+TEST(TimeStep, PlateTooFastForTheStepIsRefused) {
   expect_refusal<ConfigError>(
       [] {
         plan_of({"drive.gamma=1e5", "time.steps_per_contact=50"});
@@ -252,7 +251,7 @@ TEST(TimeStep, H18_APlateTooFastForTheStepIsRefused) {
       "the plate moves 6.6");
 }
 
-TEST(TimeStep, H18_ABeadBehindAWallIsPushedBackInside) {  // walls are half spaces
+TEST(TimeStep, BeadBehindAWallIsPushedBackInside) {  // walls are half spaces
   Bench b(kNoGravity + "[contact]\ngamma_n = 0.0\n");
   GuardLimits open;
   open.overlap = 10, open.travel_per_step = 10;
@@ -267,7 +266,7 @@ TEST(TimeStep, H18_ABeadBehindAWallIsPushedBackInside) {  // walls are half spac
   }
 }
 
-TEST(TimeStep, H18_APlateAtAThousandTimesTheBeadsSpeedStopsTheRun) {
+TEST(TimeStep, PlateAtAThousandTimesTheSpeedOfTheBeadsStopsTheRun) {
   const Scene scene = good({"time.steps_per_contact=50", "drive.gamma=1000", "drive.start=abrupt",
                             "time.discard=0", "time.cycles=1"});
   Simulation run(scene);
@@ -276,7 +275,7 @@ TEST(TimeStep, H18_APlateAtAThousandTimesTheBeadsSpeedStopsTheRun) {
   EXPECT_GT(out.n_frames(), 0U);
 }
 
-TEST(TimeStep, H19_ABeadDoesNotPassThroughAnother) {
+TEST(TimeStep, BeadDoesNotPassThroughAnother) {
   for (const double v : {30.0, 100.0, 1e3, 1e4, 1e150}) {
     Bench b(kNoGravity);
     b.kernel = make_solver(b.plan, guard_limits(b.plan));
@@ -291,7 +290,7 @@ TEST(TimeStep, H19_ABeadDoesNotPassThroughAnother) {
   }
 }
 
-TEST(TimeStep, H33_FramesFallOnPhases) {
+TEST(TimeStep, FramesFallOnPhases) {
   for (const char* phases : {"1", "7", "20", "23"})
     for (const char* n : {"50", "50.37", "8"}) {
       const Plan plan = plan_of({std::string("time.phases=") + phases,

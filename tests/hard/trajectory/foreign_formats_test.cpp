@@ -377,6 +377,51 @@ TEST_F(ForeignFormats, DamagedTables) {
               fmt::format("f:3: time {} of a frame comes after time 5; times must increase.", time));
 }
 
+TEST_F(ForeignFormats, ATracerIsOneInMostFrames) {
+  const std::string rows =
+      "frame,particle,x,y,tracer\n0,4,1,-1,0\n0,5,2,-1,0\n1,4,1,-1,1\n1,5,2,-1,0\n2,4,1,-1,1\n";
+  put_file(file(), rows);
+  const ForeignTrajectory changing(file(), foreign_format("csv", ""), {.timestep = 1});
+  EXPECT_EQ(changing.info().tracer, (std::vector<std::uint8_t>{1, 0}));
+  EXPECT_EQ(changing.assumption(),
+            "1 bead is a tracer in some frames only: each bead is what it is in most frames.");
+  put_file(file(), "frame,particle,x,y,tracer\n0,4,1,-1,1\n1,4,1,-1,1\n");
+  EXPECT_EQ(ForeignTrajectory(file(), foreign_format("csv", ""), {.timestep = 1}).assumption(), "");
+}
+
+TEST_F(ForeignFormats, ATableThatContradictsItself) {
+  const std::string sizes = "frame,particle,x,y,radius,diameter\n0,4,1,-1,0.5,";
+  EXPECT_EQ(refusal("csv", sizes + "1\n"), "accepted");
+  EXPECT_EQ(refusal("csv", sizes + "0.5\n"),
+            "f:2: the radius is 0.5 and the diameter 0.5, which is not twice the radius.");
+}
+
+TEST_F(ForeignFormats, AVelocityMayBeUnknown) {
+  const std::string table = "frame,particle,x,y,vx,vy\n0,4,1,-1,";
+  for (const char* unknown : {"nan,1\n", "-nan,1\n", ",1\n"}) {
+    put_file(file(), table + unknown);
+    const MemoryTrajectory t = read("csv", {.timestep = 1});
+    EXPECT_TRUE(std::isnan(t.frames().at(0).velocity[0].x())) << unknown;
+    EXPECT_EQ(t.frames()[0].velocity[0].z(), -1) << unknown;
+  }
+  EXPECT_EQ(refusal("csv", table + "inf,1\n"), "f:2: vx: 'inf' is not a finite number.");
+  EXPECT_EQ(refusal("xyz", "1\nProperties=species:S:1:pos:R:3:velo:R:3\nX 1 1 0 nan 0 0\n"), "accepted");
+  EXPECT_EQ(refusal("xyz", "1\nProperties=species:S:1:pos:R:3:velo:R:3\nX 1 1 0 inf 0 0\n"),
+            "f:3: 'inf' is not a finite number.");
+  EXPECT_EQ(refusal("xyz", "1\nProperties=species:S:1:pos:R:3\nX nan 1 0\n"),
+            "f:3: 'nan' is not a finite number.");
+}
+
+// A GSD file of three dimensions is read as a plane only if its beads are in one.
+TEST_F(ForeignFormats, AThreeDimensionalGsdFileIsNoPlane) {
+  export_trajectory(three_beads(3), foreign_format("gsd", ""), {}, file(), "f");
+  const std::string whole = read_text_file(file());
+  const std::string said = refusal("gsd", whole);
+  EXPECT_NE(said.find("not in the plane z = "), std::string::npos) << said;
+  EXPECT_NE(said.find("is this a three-dimensional system (--dimension 3)?"), std::string::npos) << said;
+  EXPECT_EQ(refusal("gsd", whole, {.dimension = 3, .timestep = 1}), "accepted");
+}
+
 TEST_F(ForeignFormats, AFullDiskIsReported) {
   TrajectoryInfo info;
   info.n_beads = 100;
@@ -649,7 +694,8 @@ TEST_F(ForeignFormats, AGsdFileWithAnIdThatIsNoWholeNumberIsRefused) {
   ASSERT_NE(at, std::string::npos);
   const auto with = [&](double id) {
     std::string damaged = whole;
-    return refusal("gsd", damaged.replace(at, 3 * sizeof(double), bytes({0, id, 2})));
+    return refusal("gsd", damaged.replace(at, 3 * sizeof(double), bytes({0, id, 2})),
+                   {.dimension = 3, .timestep = 1});
   };
   EXPECT_EQ(with(5), "accepted");
   EXPECT_EQ(with(0.5), "f: log/particles/id of frame 0 has 0.5, not a whole number within 9e+15.");

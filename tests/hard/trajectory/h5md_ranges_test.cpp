@@ -59,7 +59,7 @@ std::shared_ptr<const RecordedMotion> record(std::vector<MotionSample> samples, 
   return std::make_shared<RecordedMotion>(std::move(samples), std::move(info));
 }
 
-TEST(H5mdRanges, WhatNoCellCanBeIsRefusedByEveryVerb) {
+TEST(H5mdRanges, ImpossibleCellsAreRefused) {
   const TemporaryFolder folder;
   const std::string file = folder / "t.h5";
   write(file, sound());
@@ -143,7 +143,7 @@ TEST(H5mdRanges, AnUnknownAxisIsNoIndex) {
   expect_refused(file, "axis");
 }
 
-TEST(H5mdRanges, ClaimsAreHeldAgainstWhatTheFileHolds) {
+TEST(H5mdRanges, StatedSizesMatchFileContent) {
   const TemporaryFolder folder;
   const std::string file = folder / "t.h5";
   spoil(file, "particles/trajectory/position/step", [](hid_t steps) {

@@ -96,7 +96,7 @@ TEST_F(Dump, BeadsMayBeMissing) {
 }
 
 // A bead that moves right by 3 a frame in a period of 8, in every notation of its position.
-TEST_F(Dump, AllWaysToSayWhereABeadIs) {
+TEST_F(Dump, AllCoordinateColumnsAreRead) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> ways = {
       {"id xu y", {"1 6 1", "1 9 1", "1 12 1"}},
       {"id xsu ys", {"1 0.75 0.25", "1 1.125 0.25", "1 1.5 0.25"}},

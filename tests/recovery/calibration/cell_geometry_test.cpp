@@ -223,7 +223,7 @@ TEST(CellGeometry, IntervalsCoverWithHalfTheEdgesHidden) {
   EXPECT_LE(covered, 0.97 * 5 * trials);
 }
 
-TEST(CellGeometry, WhatIsNotThereIsNotFitted) {
+TEST(CellGeometry, AbsentEdgesAreNotFitted) {
   StackEdges none;
   none.size = {100, 100};
   none.plate.resize(5);
@@ -364,7 +364,7 @@ TEST(BeadWalls, TiltOfALeaningCellComesBackFromItsBeads) {
 }
 
 TEST(Target, AChessboardGivesScaleTurnBendAndTilt) {
-  const imaging::TargetPattern pattern{.kind = "chessboard", .columns = 9, .rows = 6};
+  const imaging::TargetPattern pattern{.kind = imaging::TargetKind::chessboard, .columns = 9, .rows = 6};
   const cv::Size size(400, 300);
   const imaging::Lens lens(size, 2.0, 0.03);
   std::mt19937_64 generator(13);
@@ -400,7 +400,8 @@ TEST(Target, CornersOfADrawnBoardAreFound) {
   for (int r = 0; r < 7; ++r)
     for (int c = 0; c < 10; ++c)
       if ((r + c) % 2 == 0) board(cv::Rect(20 + 36 * c, 20 + 36 * r, 36, 36)) = 0;
-  const auto points = imaging::find_target(board, {.kind = "chessboard", .columns = 9, .rows = 6});
+  const auto points =
+      imaging::find_target(board, {.kind = imaging::TargetKind::chessboard, .columns = 9, .rows = 6});
   ASSERT_EQ(points.size(), 54U);
   // The first inner corner is between pixels 55 and 56.
   EXPECT_NEAR(std::min(points.front().x_px, points.back().x_px), 55.5, 0.1);

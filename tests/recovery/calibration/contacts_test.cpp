@@ -129,7 +129,7 @@ TEST(Bounce, ScatterOfTheImpactsIsPartOfTheError) {
   EXPECT_LE(r.coverage, 0.94);
 }
 
-TEST(Bounce, OutliersAreTold) {
+TEST(Bounce, OutliersAreIdentified) {
   const Recovered r = recover("20 % outliers", {.outliers = 0.2}, 200, {});
   EXPECT_GE(r.coverage, 0.91);
   EXPECT_LE(r.coverage, 0.98);

@@ -229,7 +229,7 @@ TEST(DriveFit, AWrongNumberOfFramesPerCycleIsNoPlateAtRest) {
       "does not move by more than the scatter");
 }
 
-TEST(DriveFit, WhatCannotBeLocked) {
+TEST(DriveFit, HeightsWithoutADriveAreRefused) {
   EXPECT_THROW(fit_drive({1, 2, 3}), InputError);
   EXPECT_THROW(fit_drive(std::vector<double>(50, 4.0)), InputError) << "a plate at rest has no phase";
   EXPECT_THROW(fit_drive(std::vector<double>(50, std::nan(""))), InputError);

@@ -26,7 +26,7 @@ SizeStatistics census_of(const std::filesystem::path& stack) {
 
 }  // namespace
 
-TEST(RealBeads, SizesAreThoseOfTheirTruthAndWhatIsNoWallIsNone) {
+TEST(RealBeads, SizesMatchTruthAndNoWallIsInvented) {
   // Glass beads in a flume (Lafaye de Micheaux et al., Machine Vision and Applications 29 (2018) 735), at
   // half resolution.
   const auto folder = kImages / "bedload_left_half";

@@ -343,7 +343,7 @@ TEST(Camera, DiscsHideEachOtherInThreeDimensionsOnly) {
   EXPECT_NEAR(camera.truth(exposure).at(0).visible, 2.0 / 3, 0.04);
 }
 
-TEST(Camera, GlareSitsWhereItIsSaid) {
+TEST(Camera, GlareIsAtItsStatedPosition) {
   CameraOptions o = plain();
   o.glare = 0.5;
   const TrajectoryInfo info = empty_cell(8);

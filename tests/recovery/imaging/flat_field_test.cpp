@@ -111,7 +111,7 @@ Error error_of(std::unique_ptr<FrameSource> source) {
   return e;
 }
 
-TEST(FlatField, TakesOutWhatStaysWhereItIs) {
+TEST(FlatField, RemovesStaticDirt) {
   const TemporaryFolder folder;
   const Stacks stacks(folder);
   const auto frames = [&] { return open_frames(stacks.frames); };

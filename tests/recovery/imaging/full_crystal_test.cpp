@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "imaging/benchmark/cramer_rao_bound.hpp"
 #include "imaging/benchmark/detection_score.hpp"
 #include "imaging/benchmark/picture.hpp"
 #include "imaging/locate/locator.hpp"

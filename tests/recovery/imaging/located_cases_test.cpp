@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "imaging/benchmark/cases.hpp"
+#include "imaging/benchmark/cramer_rao_bound.hpp"
 #include "imaging/benchmark/detection_score.hpp"
 #include "imaging/locate/locator.hpp"
 
@@ -123,7 +124,7 @@ TEST_F(LocatedCase, ErrorsAreAtTheBound) {
 
 // One sweep for all beads together uses every other row. The bound of half the pixels is 1.41 times that of
 // all. In a crystal, edges displaced by a tenth of a pixel do not yet respond linearly to position and blur.
-TEST_F(LocatedCase, OneSweepComesNear) {
+TEST_F(LocatedCase, OneSweepComesNearTheBound) {
   const std::map<std::string, double> most = {{"sparse", 1.7}, {"hexagonal", 3.5}, {"random", 2.2}};
   for (const auto& [name, ratio] : most) {
     const Seen::One& one = look(name, 51).frames[0];
@@ -145,7 +146,7 @@ TEST_F(LocatedCase, OneSweepComesNear) {
 }
 
 // Two sweeps over all beads together, the first starting from the voted positions, reach the bound.
-TEST_F(LocatedCase, TwoSweepsDo) {
+TEST_F(LocatedCase, TwoSweepsReachTheBound) {
   for (const char* name : {"sparse", "hexagonal", "random"})
     for (const double snr : {164.0, 51.0, 18.5}) {
       LocatorOptions options;

@@ -216,7 +216,7 @@ TEST(SquareFrame, StaysAsItIs) {
 
 // Profile and radii are known up to a common stretch, which the rim fixes. Before, the radius followed the
 // size that was searched for, by up to 14 %.
-TEST(CommonProfile, TheRadiusIsThatOfTheRimWhateverSizeIsSearchedFor) {
+TEST(CommonProfile, RadiusIndependentOfSearchDiameter) {
   constexpr double kDiameter = 22;
   constexpr int kSide = 260;
   const Look& look = kLooks.front();

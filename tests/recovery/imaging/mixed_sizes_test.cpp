@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "imaging/benchmark/cramer_rao_bound.hpp"
 #include "imaging/benchmark/detection_score.hpp"
 #include "imaging/benchmark/packing.hpp"
 #include "imaging/locate/locator.hpp"

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "imaging/benchmark/cramer_rao_bound.hpp"
 #include "imaging/benchmark/detection_score.hpp"
 #include "imaging/benchmark/packing.hpp"
 #include "imaging/settings/configure_locator.hpp"

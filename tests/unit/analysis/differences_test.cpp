@@ -88,7 +88,7 @@ TEST(Differences, TheHeightIsNamedIfThereAreSeveral) {
 }
 
 // 0.3 apart, of which camera and tracking cause 0.2; the remaining 0.1 is four errors of 0.025.
-TEST(Differences, RealOnesAreRowsAndWhatRemainsOpenIsSaidOnce) {
+TEST(Differences, SignificantDifferencesAreRowsAndOpenQuestionsAreListedOnce) {
   const Runs runs = {run(Side::experiment, 1.0, 0.015), run(Side::simulation, 0.7, 0.02)};
   Checks checks;
   checks.filmed.push_back(
@@ -102,7 +102,7 @@ TEST(Differences, RealOnesAreRowsAndWhatRemainsOpenIsSaidOnce) {
   EXPECT_EQ(real_differences_text({}, {}), "");
 }
 
-TEST(Differences, NothingWasFilmedIsSaidOnlyIfItIsTrue) {
+TEST(Differences, MissingFilmIsReportedOnlyWithoutFilm) {
   Runs runs = {run(Side::experiment, 1.0, 0.015), run(Side::simulation, 0.7, 0.02)};
   for (auto& r : runs) r.results.push_back(number("q6", r.side == Side::experiment ? 0.7 : 0.5, 0.01));
   const auto matches = match_runs(runs);
@@ -127,7 +127,7 @@ TEST(Differences, WithinTheErrorTheLargestSourceIsNamed) {
 
 // Two runs 0.02 apart: s = 0.01414, and 1.96 times the seed error is the 95 % limit of Student's t with one
 // degree of freedom, 12.706 s sqrt(3/2).
-TEST(Differences, AFewSeedsAreNoCertainty) {
+TEST(Differences, FewSeedsGiveAnErrorOfStudentsT) {
   const Runs runs = {run(Side::experiment, 1.0, 1e-6), run(Side::simulation, 0.81, 1e-6),
                      run(Side::simulation, 0.83, 1e-6)};
   const Difference d = only(runs);
@@ -173,7 +173,7 @@ TEST(Differences, ANumberThatRepeatsAnotherIsCountedOnce) {
   EXPECT_EQ(only(runs).quantity, "s_b");
 }
 
-TEST(Differences, WhatIsTheSameIsSaidToBe) {
+TEST(Differences, EqualResultsAreReportedAsEqual) {
   EXPECT_NE(
       only({run(Side::experiment, 1.0, 0.01), run(Side::simulation, 1.0, 0.01)}).attribution().find("same"),
       std::string::npos);
@@ -188,7 +188,7 @@ TEST(Differences, AStartWithOtherDefectsMayBeTheReason) {
   EXPECT_NE(d.attribution().find("starts with other defects"), std::string::npos) << d.attribution();
 }
 
-TEST(Differences, ARealOneIsCalledSoAndAnUnknownErrorToo) {
+TEST(Differences, SignificantDifferencesAndUnknownErrorsAreReported) {
   const Difference real = only({run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.5, 0.01)});
   EXPECT_NE(real.attribution().find("real difference"), std::string::npos) << real.attribution();
   Runs runs = {run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.5, 0.01)};
@@ -247,7 +247,7 @@ TEST(Differences, LinesOfTracersInAShearedBed) {
   }
 }
 
-TEST(Differences, WhatTheChoiceOfTracersDoesToBothSidesAlikeIsNoDifference) {
+TEST(Differences, CommonTracerBiasCancels) {
   const Runs runs = {run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.9, 0.01)};
   Checks alike, apart;
   alike.tracers = {{0, "s_b", {0.5, 1.0, 1.5}}, {1, "s_b", {0.4, 0.9, 1.4}}};

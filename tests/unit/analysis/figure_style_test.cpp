@@ -63,8 +63,12 @@ TEST(FigureStyle, ALogarithmicPairHasOneFormat) {
 TEST(FigureStyle, SeriesDifferInColourAndInShape) {
   std::set<std::string> colours;
   std::set<int> shapes;
+  const std::string definitions = head();
   for (std::size_t i = 0; i < 8; ++i) {
-    colours.insert(series_colour(i));
+    const std::size_t line = definitions.find("set linetype " + std::to_string(i + 1) + " lc rgb '");
+    ASSERT_NE(line, std::string::npos);
+    const std::size_t colour = definitions.find('\'', line) + 1;
+    colours.insert(definitions.substr(colour, definitions.find('\'', colour) - colour));
     shapes.insert(series_point(i));
   }
   EXPECT_EQ(colours.size(), 8U);
@@ -86,7 +90,7 @@ TEST(FigureStyle, PanelsTileTheFigureAboveTheirKey) {
   EXPECT_EQ(panel_title(0, "one\ntwo"), "set title 'one'.\"\\n\".'two'\n");
 }
 
-TEST(FigureStyle, TheRulesFindWhatTheyAreFor) {
+TEST(FigureStyle, StyleChecksDetectViolations) {
   const std::string good = axes(axis(true, 1, 50), axis(false, 0, 1)) + panel_title('a', "2D");
   const auto complaint = [](const std::string& commands) {
     const auto all = broken_figure_rules(commands);

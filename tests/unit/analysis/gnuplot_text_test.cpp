@@ -28,7 +28,7 @@ const std::vector<std::string> kHostile = {"x'.system(\"touch PWNED\").'",
 
 }  // namespace
 
-TEST(GnuplotText, NothingEndsTheString) {
+TEST(GnuplotText, NoCharacterEndsTheString) {
   EXPECT_EQ(gnuplot_text("plain, σ/t0 (1)"), "plain, σ/t0 (1)");
   EXPECT_EQ(gnuplot_text("a_b^{c}@&~\\"), "a\\_b\\^\\{c\\}\\@\\&\\~\\\\");
   EXPECT_EQ(gnuplot_text("it's `x`\n\r\t!"), "it’s ‘x‘   !");

@@ -41,7 +41,7 @@ TEST(OnsetAgreement, TheSentenceStatesBothIntervals) {
             "simulation, different.");
 }
 
-TEST(OnsetAgreement, LimitsOnTheSameSideAgreeOnNothing) {
+TEST(OnsetAgreement, LimitsOnTheSameSideGiveNoStatement) {
   PhaseBoundary twins = onset(Side::simulation, 1.6, {});
   twins.start = "trajectory";
   EXPECT_EQ(said({onset(Side::experiment, 1.6, {}), twins}),

@@ -91,7 +91,7 @@ TEST(Statistics, IntervalsCoverTheMean) {
   test::validate({"V5.12", "coverage, %: 200 independent values", 95, 2, "binomial"}, cover(200, 0));
 }
 
-TEST(Statistics, IntervalsCoverTheMeanOfASeriesThatEchoes) {
+TEST(Statistics, IntervalsCoverTheMeanOfASeriesWithADelayedCorrelation) {
   // Each value depends on the previous one and on the one 15 before. The correlation falls to 0.05 by lag
   // nine and is 0.2 again at lag fifteen, similar to the temperature of a vibrated gas from cycle to cycle.
   std::mt19937_64 generator(8);
@@ -236,13 +236,6 @@ TEST(Statistics, NoSeriesHasAnIntervalOfZeroWidth) {
   for (int i = 0; i < 16; ++i) sixteen.add(i % 2 == 0 ? 1 : -1);
   EXPECT_FALSE(sixteen.interval("cycles").has_value());
   EXPECT_NE(sixteen.why_no_interval("cycles").find("period"), std::string::npos);
-}
-
-TEST(Statistics, AnAbsentIntervalOfAMeanHasAReason) {
-  EXPECT_EQ(why_no_mean_interval({1, 2, 4}, "runs"), "");
-  EXPECT_EQ(why_no_mean_interval({1}, "runs"), "too few runs for an error: 1 of at least 2");
-  EXPECT_EQ(why_no_mean_interval({0.1, 0.1, 0.1}, "runs"), "the same in all 3 runs");
-  EXPECT_EQ(why_no_mean_interval({1, std::nan("")}, "runs"), "not every one of 2 runs has a value");
 }
 
 TEST(Statistics, BootstrapCoversMeanAndSpreadOfAFewItems) {

@@ -66,7 +66,7 @@ TEST(Tracers, MarkedOnesAreTaken) {
   EXPECT_EQ(choose_tracers(bed.info(), bed.frames().front()).slots, (std::vector<std::size_t>{3, 17}));
 }
 
-TEST(Tracers, MarksOfWhichNoneIsSetAreNoChoice) {
+TEST(Tracers, UnsetMarksAreIgnored) {
   MemoryTrajectory bed = test::rigid_bed({.gamma = 1.5, .columns = 20, .rows = 11});
   const std::vector<std::size_t> line = choose_tracers(bed.info(), bed.frames().front()).slots;
   bed.info().tracer.assign(bed.info().n_beads, 0);

@@ -6,7 +6,7 @@ namespace twincell {
 namespace {
 
 // Between a tenth of one DDR2 channel, for machines that do much else, and more than any machine has.
-TEST(MemoryBandwidth, IsThatOfAMachine) {
+TEST(MemoryBandwidth, IsPhysicallyPlausible) {
   for (const int threads : {1, 2, 3}) {
     const std::optional<double> found = memory_bandwidth(threads);
     if (!found) GTEST_SKIP() << "less than 512 MB are free";

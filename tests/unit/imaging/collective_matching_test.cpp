@@ -130,7 +130,7 @@ TEST(CollectiveMatching, WhereNobodyIsLostARowSlidesByALatticeVector) {
   EXPECT_EQ(match.margin[5], 0) << "nothing but the count says so";
 }
 
-TEST(CollectiveMatching, NobodyIsFoundAPlaceAcrossTheBed) {
+TEST(CollectiveMatching, LongChainsDoNotMoveForOneBead) {
   // A chain of 30 beads would have to move on by one place. It is cheaper to leave one bead without a
   // detection and one detection without a bead.
   const auto places = crystal(30);
@@ -142,7 +142,7 @@ TEST(CollectiveMatching, NobodyIsFoundAPlaceAcrossTheBed) {
   EXPECT_EQ(wrong(match.column_of_row), 1U);
 }
 
-TEST(CollectiveMatching, AGuessDoesNoHarm) {
+TEST(CollectiveMatching, InitialGuessDoesNotChangeTheResult) {
   // A ring of six beads: the cost decreases if all six move on to the next place, and increases if only two,
   // three or four of them do. The initial guess is either the ring or invalid, which must not change the
   // result.
@@ -159,7 +159,7 @@ TEST(CollectiveMatching, AGuessDoesNoHarm) {
             ring);
 }
 
-TEST(CollectiveMatching, WhatCannotBeToldHasNoMargin) {
+TEST(CollectiveMatching, IndistinguishableLinksHaveNoMargin) {
   // Two beads and two detections that are equally near to both; a third pair far away is unambiguous.
   const std::vector<PixelPoint> places = {{0, 0}, {18, 0}, {200, 0}};
   const std::vector<PixelPoint> detections = {{9, 12}, {9, -12}, {200, 1}};

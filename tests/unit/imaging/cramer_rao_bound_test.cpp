@@ -1,6 +1,8 @@
 // The Cramér-Rao bound of rendered pictures, against the Fisher information from finite differences of whole
 // pictures and against the closed form of a straight edge; packings whose discs touch but do not overlap.
 
+#include "imaging/benchmark/cramer_rao_bound.hpp"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -47,7 +49,7 @@ std::vector<double> bound_by_differences(const Picture& picture, double snr) {
   return bound;
 }
 
-TEST(CramerRaoBound, IsThatOfDifferencesOfWholePictures) {
+TEST(CramerRaoBound, MatchesNumericalFisherInformation) {
   std::mt19937_64 random(5);
   Picture p;
   p.width = p.height = 80;

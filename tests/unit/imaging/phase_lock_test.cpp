@@ -317,7 +317,7 @@ TEST(FoundPhase, AGapOfHalfACycleIsSeen) {
     EXPECT_EQ(t.frames[f].phase, bad.ticks[f] % kPhases) << f;
 }
 
-TEST(FoundPhase, WhatTheBeadsSayOfRepeatsCounts) {
+TEST(FoundPhase, RepeatsSeenByTheBeadsAreEvidence) {
   // A bed with irregular motion, as above the onset of convection.
   const Film clean = film(240, 0, 0.05, 0, {}, {});
   BedMotion motion{clean.heights, std::vector<double>(clean.heights.size(), -40.0)};

@@ -76,7 +76,7 @@ TEST(PictureEvidence, OfAnExactModelIsItsClosedForm) {
 }
 
 // A disc less is the share of a disc less; a disc where none is costs its parameters and its place at least.
-TEST(PictureEvidence, FallsWithADiscLessAndWithADiscTooMany) {
+TEST(PictureEvidence, FallsForMissingAndForSurplusDiscs) {
   const cv::Mat1f grey = cones(kCentres);
   const PictureEvidence all = picture_evidence(grey, discs_at(kCentres, kRadius), {kRadius});
   const PictureEvidence less =

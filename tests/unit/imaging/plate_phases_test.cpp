@@ -102,7 +102,7 @@ TEST(PlatePhases, ADelayOfAllFramesDoesNotMoveTheFirstPhase) {
   EXPECT_EQ(phases_from_plate(heights, 20, -0.51)->first_phase, 4);
 }
 
-TEST(PlatePhases, APlateThatCannotTellGivesNothing) {
+TEST(PlatePhases, UninformativePlateGivesNoPhases) {
   const std::vector<double> ticks = ticks_of(200, 0, {}, {});
   EXPECT_FALSE(phases_from_plate({}, 0));
   EXPECT_FALSE(phases_from_plate(std::vector<double>(200, std::numeric_limits<double>::quiet_NaN()), 20));

@@ -55,7 +55,7 @@ TEST(ResidualIllumination, IsSeenWhereThereIsOne) {
 }
 
 // A misplaced disc changes only its own tile, even by fifty times the noise.
-TEST(ResidualIllumination, IsNotWhatOneTileHasForItself) {
+TEST(ResidualIllumination, IgnoresSingleTileResidual) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     Tiles t = tiles_of(0, seed);
     t.mean(7, 5) = 50 * kNoise;
@@ -93,7 +93,7 @@ TEST(ResidualIllumination, FollowsItsNeighboursWhereNothingIsSeen) {
 
 // For a tilted plane, extrapolation would continue the slope beyond the last visible tile; the map of the
 // illumination must not.
-TEST(ResidualIllumination, GoesNowhereBeyondWhatIsSeen) {
+TEST(ResidualIllumination, DoesNotExtrapolate) {
   Tiles t = tiles_of(0, 1);
   for (int y = 0; y < kHigh; ++y)
     for (int x = 0; x < kWide; ++x) {

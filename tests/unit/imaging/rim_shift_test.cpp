@@ -31,7 +31,7 @@ TEST(RimShift, IsThatOfAHarmonic) {
   }
 }
 
-TEST(RimShift, OfDiscsIsNoneWithAnyNoise) {
+TEST(RimShift, ZeroForDiscsAtAnyNoise) {
   for (const double noise : {0.5, 5.0, 20.0})
     EXPECT_LT(shift(objects(circle, noise), discs(kRadius)), 0.002) << noise;
   // Centres that are off by half a pixel, and radii, as those of proposals.
@@ -55,7 +55,7 @@ TEST(RimShift, LeavesOutWhatAllDiscsHaveInCommon) {
 }
 
 // The residuals of neighbours in contact, whose rims blur into each other, are no deviation.
-TEST(RimShift, OfDiscsInContactIsNone) {
+TEST(RimShift, ZeroForTouchingDiscs) {
   constexpr double kPitchOfContacts = 12;
   cv::Mat1f grey(200, 200, 200.0F);
   std::vector<Detection> crystal;
@@ -110,7 +110,7 @@ TEST(RimShift, AQuarterOfTheDiscsMustBeRound) {
   EXPECT_GT(rim_shift(two, of_two, {kRadius, 0.5 * kRadius}), 2 * kMaxRimShift);
 }
 
-TEST(RimShift, OfRimsThatAreNotSeenIsNone) {
+TEST(RimShift, ZeroForHiddenRims) {
   EXPECT_EQ(rim_shift({}, {}, {kRadius}), 0);
   for (const double noise : {0.5, 5.0, 20.0})
     EXPECT_LT(shift(objects([](double) { return 0.0; }, noise), discs(kRadius)), 0.2 * kMaxRimShift) << noise;

@@ -19,7 +19,7 @@ double variation(const cv::Mat1f& grey, const std::vector<Detection>& of) {
   return rim_variation(grey, of, {kRadius});
 }
 
-TEST(RimVariation, OfDiscsIsNoneWithAnyNoise) {
+TEST(RimVariation, ZeroForDiscsAtAnyNoise) {
   for (const double noise : {0.5, 5.0, 20.0})
     EXPECT_LT(variation(objects(circle, noise), discs(kRadius)), 0.006) << noise;
   // Centres that are off by half a pixel, as those of proposals.
@@ -76,7 +76,7 @@ TEST(RimVariation, LeavesOutWalls) {
   EXPECT_GT(rim_variation(grey, beside, {kRadius}, {}, walls), kMaxRimVariation);
 }
 
-TEST(RimVariation, OfRimsThatAreNotSeenIsNone) {
+TEST(RimVariation, ZeroForHiddenRims) {
   EXPECT_EQ(variation(objects(circle, 1), {}), 0);
   std::vector<Detection> hidden = discs(kRadius);
   for (const Detection& d : discs(kRadius)) {

@@ -37,14 +37,14 @@ TEST(SizeChoice, NothingIsMissingOfADiscOrOfWhatLiesInIt) {
 
 // For sharp rims the missing share is the fraction of the outer annulus, from R/2 to R, that is outside the
 // actual disc.
-TEST(SizeChoice, OfOneTooWideItsMarginIsMissing) {
+TEST(SizeChoice, OversizedDiscReportsMissingRim) {
   constexpr double kSharp = 0.1;
   const Prepared image = discs({{40, 40, 0.5, 28}}, kSharp);
   EXPECT_NEAR(missing_share(image, {40, 40, 0.5, 34}, kSharp, 0), (34.0 * 34 - 28 * 28) / (34 * 34 - 17 * 17),
               0.03);
 }
 
-TEST(SizeChoice, NothingSeenIsAllMissing) {
+TEST(SizeChoice, HiddenDiscIsAllMissing) {
   EXPECT_EQ(missing_share(discs({}), {-40, -40, 0.5, 6}, kBlur, 0), 1);
 }
 

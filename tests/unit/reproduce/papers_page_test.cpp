@@ -53,5 +53,28 @@ TEST(PapersPage, CountsNoTargetTwice) {
   EXPECT_TRUE(has("| all | 1 | 1 | 0 | 0 | 1 |  |\n")) << page;
 }
 
+TEST(PapersPage, NamesTargetsThatAreNotInTheSum) {
+  const std::string page = papers_page({{"p1-fig5",
+                                         R"({"title": "Fig. 5", "targets": [
+             {"name": "A1", "expected": "0", "measured": "0", "verdict": "pass", "not_counted": "counted in `p1-fig3`"},
+             {"name": "A2", "expected": "130", "measured": "85", "verdict": "fail"}]})"}},
+                                       "twincell reproduce --all");
+  const auto has = [&](const std::string& text) { return page.find(text) != std::string::npos; };
+  EXPECT_TRUE(has("| `p1-fig5` | 0 | 0 | 1 | 0 | 0 |")) << page;
+  EXPECT_TRUE(has("| pass; not in the sum: counted in `p1-fig3` |")) << page;
+}
+
+TEST(PapersPage, ShowsFiguresAndConditionsBelowTheTable) {
+  const std::string page = papers_page(
+      {{"p1-fig4",
+        R"({"title": "Fig. 4", "targets": [], "figures": [{"name": "p1-fig4", "caption": "T_g* [m g sigma]"}],
+            "conditions": ["mu = 0.6", "n = 6.37"], "cheaper": ["three seeds"]})"}},
+      "twincell reproduce --all");
+  const auto has = [&](const std::string& text) { return page.find(text) != std::string::npos; };
+  EXPECT_TRUE(has("\n![p1-fig4](p1-fig4/p1-fig4.svg)\n\n*p1-fig4*: T_g\\* \\[m g sigma\\]\n")) << page;
+  EXPECT_TRUE(has("\nConditions: mu = 0.6; n = 6.37.\n")) << page;
+  EXPECT_TRUE(has("\nSimplifications: three seeds.\n")) << page;
+}
+
 }  // namespace
 }  // namespace twincell::reproduce

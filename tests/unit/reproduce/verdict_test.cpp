@@ -156,5 +156,29 @@ TEST(Verdict, OneOnsetIsAboveAnotherWhenTheOppositeIsExcluded) {
   EXPECT_EQ(above(estimate_onset(never, 1, 5, 0.2), step_at(2, 4)), Verdict::pass);
 }
 
+TEST(Trend, IsThatOfTheEndsUnlessTheSeriesClearlyTurns) {
+  const auto series = [](const std::vector<double>& values, double half) {
+    std::vector<Estimate> all;
+    for (const double v : values) all.push_back({v, v - half, v + half});
+    return all;
+  };
+  EXPECT_EQ(trend_of(series({1, 2, 3}, 0.4), true).verdict, Verdict::pass);
+  EXPECT_EQ(trend_of(series({1, 2, 3}, 0.4), false).verdict, Verdict::fail);
+  EXPECT_EQ(trend_of(series({1, 2, 3}, 1.1), true).verdict, Verdict::inconclusive);
+  EXPECT_EQ(trend_of(series({1}, 0.1), true).verdict, Verdict::absent);
+  // From 3 to 2.4 with half widths of h each, intervals wider by half are separate below h = 0.2.
+  EXPECT_EQ(trend_of(series({1, 3, 2.4}, 0.21), true).verdict, Verdict::pass);
+  const Trend turned = trend_of(series({1, 3, 2.4}, 0.19), true);
+  EXPECT_EQ(turned.verdict, Verdict::fail);
+  ASSERT_TRUE(turned.against);
+  EXPECT_EQ(*turned.against, std::pair(std::size_t{1}, std::size_t{2}));
+  // The measured heights of Fig. 16, 2D rough, z = 2.5 d: a fall over all that first rises.
+  const std::vector<Estimate> bump = {
+      {0.4649, 0.4371, 0.4927}, {0.575, 0.556, 0.594}, {0.321, 0.3114, 0.3306}};
+  EXPECT_EQ(trend_of(bump, false).verdict, Verdict::fail);
+  // Without intervals only the ends count.
+  EXPECT_EQ(trend_of({{1, {}, {}}, {3, {}, {}}, {2, {}, {}}}, true).verdict, Verdict::inconclusive);
+}
+
 }  // namespace
 }  // namespace twincell::reproduce

@@ -118,7 +118,7 @@ TEST(CellGrid, TouchingAtTheEdgeOfACellCounts) {  // a gap of rounding size, for
     }
 }
 
-TEST(CellGrid, FarAndLostBeadsCostNothing) {  // H21, H30
+TEST(CellGrid, FarAndLostBeadsCostNothing) {
   const Case c{"lost", 2, {10, 0, 0}, 9, {0.5}};
   auto beads = scattered(c, 200, 4);
   const std::size_t usual = by_cells(beads, c, 0.25).size();
@@ -143,7 +143,7 @@ TEST(CellGrid, FarAndLostBeadsCostNothing) {  // H21, H30
   EXPECT_EQ(by_cells({}, c, 0.25).size(), 0U);
 }
 
-TEST(CellGrid, LargeBeadsDoNotMakeSmallOnesMany) {  // H8: counts candidates per bead, not pairs per bead
+TEST(CellGrid, LargeBeadsDoNotMakeSmallOnesMany) {  // counts candidates per bead, not pairs per bead
   const auto candidates = [](std::size_t n) {
     const double side = std::sqrt(static_cast<double>(n));
     std::vector<double> radii(n, 0.5);

@@ -11,7 +11,7 @@ namespace {
 
 using Kind = Event::Kind;
 
-TEST(EventQueue, TheFirstOfTheSoonestIsFound) {
+TEST(EventQueue, FindsTheEarliestEvent) {
   std::mt19937_64 random(3);
   for (const std::size_t beads : {1U, 2U, 7U, 16U, 101U}) {
     EventQueue schedule;
@@ -27,7 +27,7 @@ TEST(EventQueue, TheFirstOfTheSoonestIsFound) {
   }
 }
 
-TEST(EventQueue, WhoWasToTouchAChangedBeadLooksAgainThen) {
+TEST(EventQueue, PartnersOfAChangedBeadAreRescheduled) {
   EventQueue schedule;
   schedule.clear(5);
   schedule.put(0, {2, Kind::touch, 3});

@@ -358,7 +358,7 @@ TEST(Perturbation, IsSmallSeededAndOff) {
   EXPECT_GT(largest, 0.9e-3);
 }
 
-TEST(Relax, PushesLittleAndTheLighterBeadMore) {  // H5
+TEST(Relax, PushesLittleAndTheLighterBeadMore) {
   const Scene s = scene(kFlat, {"beads.count=2"});
   std::vector<Bead> pair(2);
   pair[0].x = 5, pair[1].x = 5.8, pair[0].z = pair[1].z = 5;
@@ -403,7 +403,7 @@ TEST(Relax, UndoesNoiseInAnyCell) {
     }
 }
 
-TEST(Sound, NamesTheBead) {  // H1, H5, H21
+TEST(Sound, NamesTheBead) {
   const Scene s = scene(kFlat, {"beads.count=3"});
   const auto said = [&](auto change) {
     std::vector<Bead> beads = crystal_a(s).beads;
@@ -427,7 +427,7 @@ TEST(Sound, NamesTheBead) {  // H1, H5, H21
               "a bead of radius 0.8 would meet two images of another");
 }
 
-TEST(Sound, LooksAtManyBeadsInNoTime) {  // must not search all pairs: there are 5e9
+TEST(Sound, ChecksManyBeadsQuickly) {  // must not search all pairs: there are 5e9
   const Scene s = scene(kFlat, {"beads.count=100000", "cell.width=300"});
   auto beads = crystal_a(s).beads;
   EXPECT_NO_THROW(require_sound(beads, s, 0.05));
@@ -455,7 +455,7 @@ struct Film {
   }
 };
 
-TEST(Trajectory, ImpossibleOnesAreRefused) {  // H1, H5
+TEST(Trajectory, ImpossibleOnesAreRefused) {
   const auto refusal = [](const std::vector<Vec3>& positions, const std::vector<std::string>& more = {}) {
     Film film;
     film.frame.position = positions;

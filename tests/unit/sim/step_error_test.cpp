@@ -1,5 +1,5 @@
 // The error of e that `explain` reports, against values from outside the code: closed forms of e, and errors
-// measured by an independent program (VERIFICATION.md, V1.2).
+// measured by an independent program.
 
 #include "sim/accuracy/step_error.hpp"
 

@@ -22,7 +22,7 @@ Point point() {
   return p;
 }
 
-TEST(SweepStore, AResultIsHeldAgainstItsSum) {
+TEST(SweepStore, ResultIsCheckedAgainstItsChecksum) {
   const TemporaryFolder folder;
   const Store store(folder / "sweep");
   ASSERT_TRUE(store.claim(point()));

@@ -180,7 +180,7 @@ TEST(CalibrationFile, ASceneTakesContactsOverItsPreset) {
   EXPECT_EQ(again.drive.amplitude, 1.25);
 }
 
-TEST(CalibrationFile, ABoundIsComplainedOfInTheCalibrationFile) {
+TEST(CalibrationFile, BoundViolationsNameTheCalibrationFile) {
   const TemporaryFolder folder;
   put_file(folder / "c.toml", "[contact.restitution]\nvalue = 1.2\n");
   put_file(folder / "scene.toml",

@@ -330,7 +330,7 @@ TEST(H5mdFile, EmptyTrajectoriesAreLegal) {
   EXPECT_TRUE(validate_h5md(folder / "none.h5").empty());
 }
 
-TEST(H5mdFile, AppendRefusesWhatItWasNotPromised) {
+TEST(H5mdFile, AppendRefusesInconsistentFrames) {
   const TemporaryFolder folder;
   H5mdWriter writer(folder / "run.h5", experiment_info());
   writer.append(frame_number(1));

@@ -44,7 +44,7 @@ TEST(Spacing, BeadsListedAgainAreCounted) {
   EXPECT_EQ(listed_again({}, 0.3), 0U);
 }
 
-TEST(Spacing, TheCountIsThatOfAllPairs) {
+TEST(Spacing, MatchesTheCountOverAllPairs) {
   std::mt19937_64 generator(3);
   std::uniform_real_distribution<double> any(-2, 2);
   std::vector<Vec3> all;

@@ -227,7 +227,7 @@ TEST(CellDraft, NumbersThatNoShakerReachesAreDoubted) {
   EXPECT_TRUE(draft_cell(s, {.sigma_mm = 2, .frequency_hz = 20}).notes.empty());
 }
 
-TEST(CellDraft, WhatNobodyKnowsIsRefusedByName) {
+TEST(CellDraft, OpenKeysAreRefusedByName) {
   const CellSurvey s = survey();
   const CellDraft draft = draft_cell(s, {});
   EXPECT_TRUE(key(draft, "scale.sigma_mm").open);

@@ -85,6 +85,40 @@ TEST(VoronoiArea, FillsTheBox) {
   validate({"V5.22", "mean of the density of areas", 1, 0.01, "closed form"}, mean);
 }
 
+TEST(VoronoiArea, OfADiluteGasFillsThePeriodicBox) {
+  // Most of these cells reach farther than the default radius of 0.9.
+  MemoryTrajectory t = empty(2, Vec3(60, 1, 60), true);
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> place(0, 60);
+  for (int f = 0; f < 4; ++f) {
+    std::vector<Vec3> beads;
+    for (int i = 0; i < 300; ++i) beads.emplace_back(place(random), 0, place(random));
+    add(t, beads);
+  }
+  validate({"V5.22", "mean area of the cells of a dilute gas", 12, 1e-9, "box over number of beads"},
+           values_of(t, "voronoi_area")[0]);
+  // Poisson cells: variance 0.2802 of the square of the mean (Brakke 1987).
+  validate({"V5.22", "variance of these areas over the square of the mean", 0.2802, 0.06, "Brakke 1987"},
+           values_of(t, "voronoi_area_variance")[0] / 144);
+  const auto results = analysis::analyze(t, {.only = {"voronoi_area"}});
+  EXPECT_EQ(analysis::find_result(results, "voronoi_area").convention, "all cells; mean over frames");
+}
+
+TEST(VoronoiArea, StatesTheCellsThatAreLeftOut) {
+  // 5 x 5 beads of a square lattice between walls: 9 cells are enclosed, 16 of 25 are at the surface.
+  MemoryTrajectory t = empty(2, Vec3(5, 1, 5), false);
+  std::vector<Vec3> beads;
+  for (int i = 0; i < 5; ++i)
+    for (int k = 0; k < 5; ++k) beads.emplace_back(i + 0.5, 0, k + 0.5);
+  add(t, beads);
+  const auto results = analysis::analyze(t, {.only = {"voronoi_area"}});
+  const analysis::Result& area = analysis::find_result(results, "voronoi_area");
+  EXPECT_NEAR(area.value(), 1, 1e-12);
+  EXPECT_NE(area.convention.find("64 % of the cells were left out, as they reach farther than 0.9 sigma"),
+            std::string::npos)
+      << area.convention;
+}
+
 TEST(VoronoiArea, OfAPlasticallyShearedLatticeIsUnchanged) {
   // A simple shear keeps the area of every cell: its rows slide as wholes.
   MemoryTrajectory t = empty(2, period_of_lattice(kColumns, kRows, 1), true);

@@ -184,7 +184,7 @@ MemoryTrajectory aliased(bool with_means) {
 
 }  // namespace
 
-TEST(GranularTemperature, IsOverTimeWhereTheFramesBringItAndSaysWhatTheyAlias) {
+TEST(GranularTemperature, UsesStoredTimeMeansAndReportsAliasing) {
   const auto results = analyze(aliased(true));
   // Cycle 0 has no mean before its first frame: 59 cycles of 2, 3, 1, 2, 3, 1, …, 2, 3.
   EXPECT_NEAR(find_result(results, "T_g").value(), (19 * 6 + 5) / 59.0, 1e-12);
@@ -196,7 +196,7 @@ TEST(GranularTemperature, IsOverTimeWhereTheFramesBringItAndSaysWhatTheyAlias) {
   EXPECT_EQ(find_result(results, "T_g_aliasing").n, 59U);
 }
 
-TEST(GranularTemperature, AliasingIsNotKnownWithoutMeansOverTime) {
+TEST(GranularTemperature, AliasingIsUnknownWithoutStoredTimeMeans) {
   const auto results = analyze(aliased(false));
   EXPECT_NEAR(find_result(results, "T_g").value(), 2.2, 1e-12);
   EXPECT_NE(find_result(results, "T_g").convention.find("the aliasing of 4 phases per cycle is not known"),

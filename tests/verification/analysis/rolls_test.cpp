@@ -108,7 +108,7 @@ TEST(Rolls, KnownRollsInNoiseAreCounted) {
   }
 }
 
-TEST(Rolls, WeakOnesAreLeftOut) {
+TEST(Rolls, WeakRollsAreLeftOut) {
   std::mt19937_64 generator(5);
   const CirculationBlocks blocks = blocks_of(2, 1, 0.1, 0.01, 12, 10, generator);
   EXPECT_EQ(count_rolls(blocks, 0), 2U);

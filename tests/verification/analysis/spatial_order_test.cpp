@@ -197,7 +197,7 @@ TEST(VoronoiCells, DoNotDependOnTheOrderOfBeadsOrOnThePeriod) {
   }
 }
 
-TEST(VoronoiCells, CoincidingAndLonelyBeadsAreNoTrouble) {
+TEST(VoronoiCells, CoincidingAndIsolatedBeadsHaveCells) {
   const Frame frame = frame_of({Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(9, 0, 9)});
   const VoronoiCells cells = voronoi_cells(frame, open_box());
   EXPECT_EQ(cells.neighbours.count(3), 0U);
@@ -467,7 +467,7 @@ TEST(Convection, NoiseHasNoRolls) {
   EXPECT_EQ(find_result(results, "convection_sense").text, "none");
 }
 
-TEST(Convection, TooFewCyclesAreSaid) {
+TEST(Convection, TooFewCyclesAreReported) {
   const auto one = analyze(carried([](const Vec3&) { return Vec3(0.1, 0, 0); }, 2));
   EXPECT_TRUE(find_result(one, "displacement_field").present());
   EXPECT_NE(find_result(one, "rolls").absent.find("blocks"), std::string::npos);

@@ -20,7 +20,7 @@ std::vector<analysis::Result> structure_factor_of(const MemoryTrajectory& t) {
   return analysis::analyze(t, options);
 }
 
-TEST(StructureFactor, OfPointsWithoutInteractionIsOneWithinItsInterval) {
+TEST(StructureFactor, RandomPointsGiveOneWithinTheInterval) {
   for (const int dimension : {2, 3})
     for (const bool periodic : {false, true}) {
       const auto results = structure_factor_of(ideal_gas(dimension, periodic));
@@ -67,7 +67,7 @@ TEST(StructureFactor, TriangularLatticePeakEqualsN) {
            analysis::find_result(results, "S_q_peak").value() * vectors / (6.0 * kColumns * kRows));
 }
 
-TEST(StructureFactor, OfALatticeBetweenWallsHasTheSamePeak) {
+TEST(StructureFactor, LatticeBetweenWallsHasTheSamePeak) {
   constexpr double kSpacing = 1.02;
   for (const double width : {20.0, 60.0}) {  // the second is wider than the longest window
     MemoryTrajectory t = empty(2, Vec3(width * kSpacing, 1, 40), false);
@@ -82,7 +82,7 @@ TEST(StructureFactor, OfALatticeBetweenWallsHasTheSamePeak) {
   }
 }
 
-TEST(StructureFactor, OfHalfTheBoxIsThatOfTheDensity) {
+TEST(StructureFactor, HalfFilledBoxMatchesDensityTransform) {
   // Two points at a distance of half the period L: S = 1 + cos(q_x L/2), 2 for even n and 0 for odd n; in a
   // row along x.
   MemoryTrajectory t = empty(2, Vec3(8, 1, 1), true);

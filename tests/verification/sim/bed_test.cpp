@@ -19,7 +19,7 @@ namespace {
 
 using test::validate;
 
-TEST(Bed, LoneBeadFliesAParabola) {  // H31
+TEST(Bed, LoneBeadFliesAParabola) {
   Bench b("[contact]\ntangential = \"none\"\n");
   b.add(10, 50, 0.3, 1);
   b.kernel->advance(b.system, 20000);
@@ -282,7 +282,7 @@ TEST(Bed, ColumnOfGasIsBarometric) {  // V3.9: density ~ exp(-m g z/T), from a s
   }
 }
 
-TEST(Bed, DriveReturnsToTheSameBitsEveryPeriod) {  // H14, H33
+TEST(Bed, DriveReturnsToTheSameBitsEveryPeriod) {
   Simulation run(crystal(1.5, 3));
   MemoryTrajectory out(run.trajectory_info());
   run.run(out);

@@ -51,7 +51,7 @@ TEST(Mindlin, StiffnessRatio) {
 // stiffness. By Maw, Barber & Fawcett 1976, it slides throughout from psi_1 = 4 chi - 1 on,
 // here v_t/v_n = 5.88 mu. A spring without partial slip sticks for an instant at the end, where the normal
 // force vanishes.
-TEST(Mindlin, GrossSlidingTakesTwiceMuTimesTheNormalMomentum) {
+TEST(Mindlin, GrossSlidingImpulseIsTwoMuNormalMomentum) {
   constexpr double kMu = 0.2, kDegrees = 70;
   for (const int dimension : {2, 3}) {
     const Scene scene = impact_scene(contact(kMu), dimension);

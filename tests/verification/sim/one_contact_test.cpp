@@ -156,7 +156,7 @@ TEST(NormalContact, RestitutionAskedIsRestitutionMeasured) {  // V1.6, V1.8: the
              at_origin(v) / slow);
 }
 
-TEST(NormalContact, OverdampedContactsRun) {  // H10
+TEST(NormalContact, OverdampedContactsRun) {
   Bench b(kNoGravity + "[contact]\ngamma_n = 2830.0\n", 50.37);
   EXPECT_TRUE(std::isfinite(b.system.dt));
   EXPECT_GT(b.system.dt, 0);
@@ -296,7 +296,7 @@ TEST(TangentialContact, ObliqueImpactsOfAnIndependentProgram) {
 }
 
 TEST(TangentialContact,
-     CoulombLimitAtZeroNormalForce) {  // H3, H2: finite, and the spring carries what the dashpot leaves
+     CoulombLimitAtZeroNormalForce) {  // finite, and the spring carries what the dashpot leaves
   using Scalar = Tangent<double, 1>;
   const PairScale wall{1, 0.5, 3};
   const auto spring = SpringSlider{1e4, {100, 0, 0}, 0.6}.constants(wall);

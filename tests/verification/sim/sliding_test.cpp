@@ -286,7 +286,7 @@ TEST(Sliding, SpringOnlyKeepsARemnantOfFirstOrder) {
       coarse.spin.rms);
 }
 
-TEST(Sliding, AtSixStepsAContactSpinIsRightToAHundredth) {
+TEST(Sliding, SpinErrorIsAtMostOnePercentAtSixStepsPerContact) {
   for (const double degrees : {10.0, 30.0, 45.0, 60.0, 75.0}) {
     const std::vector<Impact> one{Impact::at(degrees, true)};
     const ImpactErrors e = impact_errors(one, impact_scene(), {.integrator = "split", .n = 6.37}, 64);
@@ -363,7 +363,7 @@ TEST(Sliding, HertzianContactsComeNearSecondOrderInSplit) {
 
 // --- the default step of a scene without steps_per_contact ---
 
-TEST(DefaultStep, IsTheFewestThatIsRightToAHundredthWhateverTheLaw) {
+TEST(DefaultStep, SmallestStepCountWithOnePercentError) {
   constexpr double kFriction = 0.01, kRestitution = 2e-3, kNextOfTheLadder = 14.37;
   const std::string hertz = "normal = \"hertz\"\nyoungs_modulus = 1e7\nviscous_time = 2e-5\n",
                     dashpot = "tangential = \"dashpot\"\ngamma_t = 100.0\nmu = 0.4\n",

@@ -238,7 +238,7 @@ bool same_motion(const Bead& a, const Bead& b) {
   return a.x == b.x && a.z == b.z && a.vx == b.vx && a.vz == b.vz && a.spin == b.spin;
 }
 
-TEST(Symmetry, MirrorImagesStayMirrorImages) {  // V4.14, H12
+TEST(Symmetry, MirrorImagesStayMirrorImages) {  // V4.14
   const Scene scene = read_scene_text(
       "preset = \"fortini-huang-2015\"\n[beads]\ncount = 78\n[drive]\ngamma = 2.0\n[time]\nsteps_per_contact "
       "= 20\n",

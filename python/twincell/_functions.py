@@ -1,0 +1,43 @@
+"""Compiled functions with a signature, and with a name by which pickle, and so multiprocessing, finds them."""
+from __future__ import annotations
+
+import functools
+import inspect
+import types
+
+from . import _core
+
+
+def _signature(function):
+    """The signature in the first line of the docstring that pybind11 writes; None if Python cannot read it."""
+    made = {}
+    try:
+        exec("from __future__ import annotations\ndef " + function.__doc__.partition("\n")[0] + ": ...", made)
+    except (SyntaxError, NameError):  # a default whose text is no expression
+        return None
+    return inspect.signature(made[function.__name__])
+
+
+def named(function, name):
+    """`function` as the function `name` of the package."""
+    def call(*args, **options):
+        return function(*args, **options)
+
+    functools.update_wrapper(call, function)
+    del call.__wrapped__  # else inspect asks the compiled function, which has no signature
+    call.__module__, call.__qualname__ = __package__, name
+    signature = _signature(function)
+    if signature is not None:
+        call.__signature__ = signature
+    return call
+
+
+def name_functions(module):
+    """Names the compiled functions among the attributes of the package, and the static ones of its classes."""
+    for name, thing in list(module.items()):
+        if isinstance(thing, types.BuiltinFunctionType):
+            module[name] = named(thing, name)
+        elif inspect.isclass(thing) and thing.__module__ == _core.__name__:
+            for member, static in list(vars(thing).items()):
+                if isinstance(static, staticmethod) and isinstance(static.__func__, types.BuiltinFunctionType):
+                    setattr(thing, member, staticmethod(named(static.__func__, f"{name}.{member}")))
