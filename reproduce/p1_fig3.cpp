@@ -312,8 +312,7 @@ Target crystal_above_random(const Size& size, const std::deque<Boundary>& all, i
     if (random->at_rest > 0)
       t.reason = fmt::format(
           "s_c above sigma as the paper has it; {} of the {} random beds that exceed it had rearranged once "
-          "and "
-          "come to rest",
+          "and come to rest",
           random->at_rest, random->onset().yes);
     t.runs =
         fmt::format("{} and {} runs, {} cycles", crystal->onset().n, random->onset().n, size.convect_cycles);

@@ -155,8 +155,7 @@ std::vector<Target> targets_of(const HeightSweeps& all, const std::optional<cali
   if (s.a1 || s.a2 || s.b) {
     three.measured = fmt::format(
         "A1 {}, A2 {}, B {}; A1 ends at K_m {}, the bend of A1 and A2 together: {}; B begins at K_m {}, the "
-        "bend "
-        "of A2 and B: {}",
+        "bend of A2 and B: {}",
         text(s.a1), text(s.a2), text(s.b), all.crystal.first_slips->text(), text(s.bend_1),
         all.crystal.convection->text(), text(s.bend_2));
     three.verdict =

@@ -26,8 +26,8 @@ namespace {
 /// T_z does.
 constexpr double kFromPeak = -1;
 constexpr const char* kWarr = "Warr et al.";
-constexpr double kLowOfWarr =
-    2;  ///< W below the maximum at which the bed is a gas; the lift is fitted from here
+/// W below the maximum at which the bed is a gas; the lift is fitted from here.
+constexpr double kLowOfWarr = 2;
 
 /// An earlier experiment with its window and the paper's exponent.
 struct Study {

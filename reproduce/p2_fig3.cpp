@@ -156,9 +156,8 @@ Reproduction run(const Request& request) {
   r.targets = {
       {"W = 1.397 < W_f: only the upper layers are mobilized", "lowest layer less than half of the highest",
        said(0), holds(mobile[0][0] < mobile[0][kLayers - 1] / 2),
-       "mobile: 0.2 d relative to the centre of mass within a cycle; a bed that begins by moving along with "
-       "the "
-       "plate has still lower layers (docs/reproduce.md)"},
+       "mobile: 0.2 d relative to the centre of mass within a cycle; in a bed that begins by moving along "
+       "with the plate, the lower layers hardly move (docs/reproduce.md)"},
       {"W = 2.739, the paper’s W_f: all layers are agitated", "every layer more than half mobile", said(2),
        holds(*std::min_element(mobile[2].begin(), mobile[2].end()) > 0.5), ""},
       {"the lowest layer moves more at the paper’s W_f than at W = 1.397", "more",
