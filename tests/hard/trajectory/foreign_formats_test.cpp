@@ -384,7 +384,7 @@ TEST_F(ForeignFormats, ATracerIsOneInMostFrames) {
   const ForeignTrajectory changing(file(), foreign_format("csv", ""), {.timestep = 1});
   EXPECT_EQ(changing.info().tracer, (std::vector<std::uint8_t>{1, 0}));
   EXPECT_EQ(changing.assumption(),
-            "1 bead is a tracer in some frames only: each bead is what it is in most frames.");
+            "1 bead is a tracer in some frames only (wrong links?): each bead is what it is in most frames.");
   put_file(file(), "frame,particle,x,y,tracer\n0,4,1,-1,1\n1,4,1,-1,1\n");
   EXPECT_EQ(ForeignTrajectory(file(), foreign_format("csv", ""), {.timestep = 1}).assumption(), "");
 }
