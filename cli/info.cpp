@@ -39,6 +39,7 @@ nlohmann::json describe(const H5mdReader& file) {
   column(t.columns.phase, "drive phase and cycle");
   column(t.columns.plate_height, "plate height");
   column(t.columns.contact_forces, "contact forces");
+  column(t.columns.contacts, "contact springs");
   column(!t.radius.empty(), "radius");
   column(!t.mass.empty(), "mass");
   column(!t.tracer.empty(), "tracer");

@@ -395,9 +395,11 @@ void add_simulate(CLI::App& program, Common& common) {
       ->take_all();
   verb.add_flag("--relax", options->relax,
                 "Push overlapping beads of the start apart, however deep the overlap");
-  verb.add_flag("--contacts", options->contacts,
-                "Store the contacts of every frame: pair, overlap, normal and tangential force, for the "
-                "forces and the stress of `analyze` and the force chains of `export --to vtk`");
+  verb.add_flag(
+      "--contacts", options->contacts,
+      "Store the contacts of every frame: pair, overlap, normal and tangential force, for the "
+      "forces and the stress of `analyze` and the force chains of `export --to vtk`; and the springs "
+      "of the contacts, with which a start in motion continues the run");
   verb.add_option("--checkpoint-every", options->checkpoint_every,
                   "Time between checkpoints in OUTPUT.checkpoint/, s; 0: only at SIGINT and SIGTERM; "
                   "default: no checkpoints, with --resume every 600 s")

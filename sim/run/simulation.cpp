@@ -64,7 +64,8 @@ std::vector<ContactMemory> readable(const Scene& scene, const Plan& plan,
     if (c.values.size() != wanted)
       throw ConfigError(scene.where("start.in_motion"),
                         fmt::format("{}: its contacts store {} values, but this scene's laws and integrator "
-                                    "(\"{}\") store {}; select those that wrote the file.",
+                                    "(\"{}\") store {}; select those that wrote the file, or write it with "
+                                    "time.springs = false.",
                                     scene.from.string(), c.values.size(), scene.integrator, wanted));
     if (-1 - c.j >= static_cast<std::int64_t>(plan.walls.size()))
       throw ConfigError(scene.where("start.in_motion"),
@@ -261,7 +262,7 @@ std::vector<std::string> Simulation::warnings() const {
   if (driven_ && scene_.in_motion && plan_.history && steps_done_ == 0 && solver_->contacts().empty() &&
       beads_in_contact(system_, Progress::none()) > 0)
     all.push_back(
-        "the start in motion contains no contact springs (time.springs of the run that wrote it), so the "
+        "the start in motion contains no contact springs (simulate --contacts, time.springs), so the "
         "spring of every contact starts unstretched.");
   if (driven_ && scene_.in_motion && steps_done_ == 0)
     if (const auto before = steps_per_cycle_of_file(scene_)) {
@@ -315,7 +316,7 @@ TrajectoryInfo Simulation::trajectory_info() const {
   info.columns = {
       .velocity = true, .spin = plan_.rotation, .identity = false, .phase = true, .plate_height = true};
   info.columns.time_mean = samples_per_phase() > 0;
-  info.columns.contacts = scene_.springs;
+  info.columns.contacts = plan_.stores_memory;
   info.columns.contact_forces = scene_.contacts;
   if (scene_.contacts)
     for (const Wall& wall : system_.walls) info.walls.push_back(wall.name);
@@ -355,7 +356,7 @@ Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
     frame.velocity.emplace_back(b.vx, b.vy, b.vz);
     if (plan_.rotation) frame.spin.emplace_back(b.spin_x, -b.spin, b.spin_z);
   }
-  if (scene_.springs) {
+  if (plan_.stores_memory) {
     frame.contacts = solver_->contacts();
     const Vec3 unknown = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
     const std::size_t n = system_.beads.size();

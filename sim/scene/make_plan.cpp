@@ -48,6 +48,7 @@ void set_laws(const Scene& s, Plan& plan) {
   plan.locate = integrator_named(s.integrator).locate;
   plan.rotation = std::visit([](const auto& law) { return law.kActs; }, laws.bead.tangential);
   plan.history = std::visit([](const auto& law) { return law.kHistory; }, laws.bead.tangential);
+  plan.stores_memory = s.springs.value_or(s.contacts && remembered_numbers(plan) > 0);
   plan.laws = std::make_shared<const CellLaws>(std::move(laws));
 }
 

@@ -57,6 +57,7 @@ struct Plan {
   KernelKey key{};                       ///< selects the kernels
   bool locate = false;                   ///< the instants of entry and exit are located within their steps
   bool rotation = false, history = false;
+  bool stores_memory = false;  ///< frames contain the memory of their contacts
   bool event_driven =
       false;  ///< event-driven motion between contacts, where it is exact (event_driven_solver.hpp)
   double usual_radius = 0.5, usual_mass = 1;  ///< of the median bead

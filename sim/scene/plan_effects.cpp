@@ -198,7 +198,7 @@ void refuse_to_drop(const Scene& s, const Plan& plan) {
             "is false, but friction turns beads (contact.tangential = \"{}\", mu = {:g}); set mu = 0 at "
             "all contacts or contact.tangential = \"{}\" to turn off both.",
             s.contact.tangential, read_friction(s.contact.bead), NoTangential::kWord));
-  if (s.springs && remembered_numbers(plan) == 0)
+  if (s.springs.value_or(false) && remembered_numbers(plan) == 0)
     throw ConfigError(s.where("time.springs"), "is true, but no contact law of this scene has memory.");
   if (!s.history && plan.history)
     throw ConfigError(s.where("effects.history"),

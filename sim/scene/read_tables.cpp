@@ -391,7 +391,7 @@ void read_time(const Section& s, Scene& scene) {
   scene.discard = s.integer_in("discard", 0, 1'000'000).value_or(scene.discard);
   scene.cycles = s.integer_in("cycles", 1, 100'000'000).value_or(scene.cycles);
   scene.phases = static_cast<int>(s.integer_in("phases", 1, 10'000).value_or(scene.phases));
-  scene.springs = s.boolean("springs").value_or(scene.springs);
+  if (const auto springs = s.boolean("springs")) scene.springs = springs;
   scene.contacts = s.boolean("contacts").value_or(scene.contacts);
   if (const auto samples = s.integer_in("samples", 0, 1'000'000)) scene.samples = static_cast<int>(*samples);
 }

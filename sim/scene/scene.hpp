@@ -139,7 +139,8 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
   Stepping stepping = Stepping::automatic;
   std::int64_t discard = 10, cycles = 200;
   int phases = 20;
-  bool springs = false;   ///< contact memory is stored with every frame
+  /// Contact memory is stored with every frame; absent: where contacts are, if a law has memory
+  std::optional<bool> springs;
   bool contacts = false;  ///< contact forces are stored with every frame
   std::optional<int>
       samples;  ///< samples per cycle of time averages; 0: none; absent: 400, or two per phase with

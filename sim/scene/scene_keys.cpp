@@ -379,12 +379,12 @@ void add_start_and_time(Rows& rows) {
       {"time.discard", "cycles", "10", "50", "cycles run before recording, after a ramp or schedule"},
       {"time.cycles", "cycles", "200", "400", "cycles recorded"},
       {"time.phases", "", "20", "40", "N_k, frames recorded per cycle"},
-      {"time.springs", "", "false", "true",
+      {"time.springs", "", "that of time.contacts", "true",
        "true: every frame also stores the memory of its contacts and the forces, as a start in motion needs "
        "them"},
       {"time.contacts", "", "false", "true",
        "true, or simulate --contacts: every frame also stores its contacts with pair, overlap, normal and "
-       "tangential force"},
+       "tangential force, and time.springs is true unless stated"},
       {"time.samples", "", "400; two per phase with event-driven motion", "200",
        "samples per cycle for averages over time (granular temperature), rounded to an even number in each "
        "phase; 0: none"},

@@ -62,6 +62,26 @@ double apart(const MemoryTrajectory& whole, const MemoryTrajectory& rest, std::s
   return largest;
 }
 
+// `simulate --contacts` stores the memory of the contacts, which a start in motion reads, with their forces.
+TEST(InMotion, StoredContactsContainTheirMemory) {
+  const TemporaryFolder folder;
+  std::string text = cell("split", 20);
+  text.replace(text.find("springs"), 7, "contacts");
+  const MemoryTrajectory whole = film(read_scene_text(text, "whole"));
+  EXPECT_TRUE(whole.info().columns.contacts && whole.info().columns.contact_forces);
+  save(whole, folder / "whole.h5", true);
+  const std::vector<std::string> start = {"start.kind=trajectory",
+                                          "start.from=" + (folder / "whole.h5").string(),
+                                          "start.frame=" + std::to_string(kFrom), "start.in_motion=true"};
+  EXPECT_EQ(apart(whole, film(read_scene_text(text, "rest", start)), 18), 0);  // bit for bit
+  const auto stores = [&](const std::vector<std::string>& set) {
+    return Simulation(read_scene_text(text, "scene", set)).trajectory_info().columns.contacts;
+  };
+  EXPECT_FALSE(stores({"time.springs=false"}));
+  EXPECT_FALSE(stores({"time.contacts=false"}));
+  EXPECT_FALSE(stores({"time.integrator=verlet", "contact.tangential=dashpot"})) << "nothing is remembered";
+}
+
 TEST(InMotion, AFrameWithItsSpringsGoesOnAsTheRunDid) {
   for (const auto& [integrator, n] : {std::pair<std::string, double>{"verlet", 30}, {"split", 20}}) {
     const TemporaryFolder folder;
