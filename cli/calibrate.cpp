@@ -126,7 +126,11 @@ calibration::CellGeometry geometry_of(const CalibrateFlags& flags, const imaging
   const auto frames = open_stack(flags.stack, common);
   {
     ProgressBar bar(common, "edges");
-    edges = calibration::read_stack_edges(*frames, bright, diameter, common.n_threads(), bar);
+    edges = calibration::read_stack_edges(*frames,
+                                          {.bright = bright,
+                                           .diameter_px = diameter,
+                                           .refine = cell.refine.value_or(imaging::BeadsAtEdges{}.refine)},
+                                          common.n_threads(), bar);
   }
   try {
     return calibration::fit_cell_geometry(edges);

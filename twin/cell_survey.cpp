@@ -175,8 +175,8 @@ void survey_edges(CellSurvey& s, const SurveyOptions& options, const ProgressOf&
   const double diameter = calibration::diameter_for_edges(s.stack, s.bright, s.diameter_px);
   ReadableFrames frames(s.stack);
   const auto bar = progress("edges of walls and plate");
-  const calibration::StackEdges edges =
-      calibration::read_stack_edges(frames, s.bright, diameter, options.threads, *bar);
+  const calibration::StackEdges edges = calibration::read_stack_edges(
+      frames, {.bright = s.bright, .diameter_px = diameter, .refine = s.refine}, options.threads, *bar);
   s.n_frames = frames.read();
   s.unreadable = frames.unreadable();
   s.frame_rate_hz = calibration::frame_rate_of({}, edges, s.stack);

@@ -144,13 +144,15 @@ calibration::FilmedCell read_filmed_cell(const TwinOptions& options, const Progr
   calibration::FilmedCell filmed = calibration::stated_cell(options.film, range);
   require_known(filmed.cell, options.cell_file());
   (void)word_of_sides(filmed.cell, options.cell_file());
+  filmed = calibration::check_beads(std::move(filmed), options.open, options.stack, options.film, progress);
   // Phases from the bed or a list need no lock to the drive.
   const bool locked = filmed.source.method == imaging::PhaseMethod::fixed;
   if (!calibration::lacks_drive(filmed.cell, locked)) return filmed;
   const auto bar = progress("the plate's edge");
   calibration::CompletedDrive completed = calibration::complete_drive(
       std::move(filmed.cell), locked, options.cell_file(), options.stack, range, options.film.threads, *bar);
-  return {std::move(completed.cell), std::move(filmed.source), std::move(completed.measured)};
+  return {std::move(completed.cell), std::move(filmed.source), std::move(completed.measured),
+          std::move(filmed.found_refiner)};
 }
 
 /// The cell with a number of phases. Where the stack determines the phases, their number is not known before

@@ -94,7 +94,7 @@ CalibrationCost measure_calibration(const std::vector<int>& frames, Progress& pr
     };
     Pictures pictures(film, n);
     double start = thread_cpu_seconds();
-    const StackEdges edges = read_stack_edges(pictures, false, kScale, 1);
+    const StackEdges edges = read_stack_edges(pictures, {.diameter_px = kScale}, 1);
     time.edges_s = thread_cpu_seconds() - start;
     start = thread_cpu_seconds();
     const CellGeometry g = fit_cell_geometry(edges);

@@ -32,13 +32,13 @@ std::optional<double> frame_rate_of(std::optional<double> stated, const StackEdg
   return *info.frame_rate_hz / step;
 }
 
-StackEdges read_stack_edges(imaging::FrameSource& frames, bool bright, double diameter_px, int threads,
+StackEdges read_stack_edges(imaging::FrameSource& frames, const imaging::BeadsAtEdges& beads, int threads,
                             Progress& progress) {
   constexpr std::size_t kWallFrames = 40;  // frames in which the walls are searched
   StackEdges out;
   const std::size_t stride = std::max<std::size_t>(1, frames.announced() / kWallFrames);
   out.stride = stride;
-  out.diameter_px = diameter_px;
+  out.diameter_px = beads.diameter_px;
   const auto batch_size = static_cast<std::size_t>(std::max(1, threads)) * 2;
   std::vector<double> blurs;
   bool stamped = true;
@@ -56,7 +56,7 @@ StackEdges read_stack_edges(imaging::FrameSource& frames, bool bright, double di
     }
     std::vector<imaging::CellEdges> found(batch.size());
     in_parallel(batch.size(), threads,
-                [&](std::size_t i) { found[i] = imaging::find_cell_edges(batch[i], bright, diameter_px); });
+                [&](std::size_t i) { found[i] = imaging::find_cell_edges(batch[i], beads); });
     for (std::size_t i = 0; i < batch.size(); ++i, ++done) {
       out.size = batch[i].size();
       if (done % stride == 0) {

@@ -37,7 +37,7 @@ std::optional<double> frame_rate_of(std::optional<double> stated, const StackEdg
                                     const imaging::FrameRange& range = {});
 /// Finds the edges in every frame; reads the stack once.
 /// \throws InputError as FrameSource
-StackEdges read_stack_edges(imaging::FrameSource& frames, bool bright, double diameter_px, int threads,
+StackEdges read_stack_edges(imaging::FrameSource& frames, const imaging::BeadsAtEdges& beads, int threads,
                             Progress& progress = Progress::none());
 
 }  // namespace twincell::calibration

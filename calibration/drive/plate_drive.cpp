@@ -33,6 +33,13 @@ double scale_of(const imaging::CellDescription& cell, const CellGeometry& geomet
                     "camera.pixels_per_sigma, or cell.width if both walls are in the picture.");
 }
 
+imaging::BeadsAtEdges beads_at_edges(const imaging::CellDescription& cell,
+                                     const std::filesystem::path& stack) {
+  return {.bright = cell.bright,
+          .diameter_px = diameter_for_edges(stack, cell.bright, cell.pixels_per_sigma.value_or(0)),
+          .refine = cell.refine.value_or(imaging::BeadsAtEdges{}.refine)};
+}
+
 /// Plate edge and its motion. If the plate is outside the picture, the detection may return the lowest row of
 /// beads or the picture's border instead, so the edge is checked. \throws InputError if no edge moves as a
 /// plate does, or if the edge is more than half a bead from the stated position of the plate
@@ -65,9 +72,8 @@ CompletedDrive complete_drive(imaging::CellDescription cell, bool phases,
                               const std::filesystem::path& cell_file, const std::filesystem::path& stack,
                               const imaging::FrameRange& range, int threads, Progress& progress) {
   const auto where = [&](const char* key) { return Where{.file = cell_file.string(), .key = key}; };
-  const double diameter = diameter_for_edges(stack, cell.bright, cell.pixels_per_sigma.value_or(0));
   const StackEdges edges = read_stack_edges(*imaging::chosen_frames(imaging::open_frames(stack), range),
-                                            cell.bright, diameter, threads, progress);
+                                            beads_at_edges(cell, stack), threads, progress);
   const auto seen = [&] {
     try {
       return plate_in_picture(cell, edges);
@@ -313,8 +319,7 @@ DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::files
   FirstFrames beginning(
       stack, range,
       std::max(kMinFrames, kCyclesRead * static_cast<std::size_t>(cell.phase_lock.frames_per_cycle)));
-  const StackEdges edges = read_stack_edges(beginning, cell.bright,
-                                            diameter_for_edges(stack, cell.bright, scale), threads, progress);
+  const StackEdges edges = read_stack_edges(beginning, beads_at_edges(cell, stack), threads, progress);
   check.frame_rate_hz = frame_rate_of(cell.frame_rate_hz, edges, stack, range);
   try {
     const DriveFit seen = motion_of_plate(cell, edges);

@@ -1,9 +1,15 @@
 #include "calibration/film/track_film.hpp"
 
+#include <fmt/format.h>
+
+#include <optional>
 #include <utility>
 
 #include "core/error.hpp"
 #include "imaging/preprocess/open_flattened.hpp"
+#include "imaging/preprocess/region.hpp"
+#include "imaging/settings/check_scale.hpp"
+#include "imaging/stack/open_frames.hpp"
 
 namespace twincell::calibration {
 
@@ -12,6 +18,12 @@ namespace {
 /// Whether the drive is one that the cell states and the frames can contradict.
 bool checks_drive(const FilmedCell& filmed, const FilmOptions& options) {
   return filmed.measured_drive.empty() && !options.trust_stated_drive && filmed.cell.drive();
+}
+
+imaging::LocatorOptions locator_of(const imaging::CellDescription& cell, const FilmOptions& options) {
+  return imaging::locator_of(
+      options.locating, cell.pixels_per_sigma,
+      options.request.cell_file.empty() ? std::nullopt : std::optional<bool>(cell.bright), cell.refine);
 }
 
 /// Plans the trajectory, checks the stated drive by the motion of the bed unless the plate has decided, and
@@ -39,8 +51,35 @@ TrackedFilm planned(FilmedCell filmed, imaging::TrackedStack stack, DriveCheck c
 
 }  // namespace
 
+FilmedCell check_beads(FilmedCell filmed, const OpenFrames& open, const std::filesystem::path& film,
+                       const FilmOptions& options, const ProgressOf& progress) {
+  const imaging::LocatorOptions locator = locator_of(filmed.cell, options);
+  if (!locator.diameter_of_scale) return filmed;
+  const auto searching = progress("settings");
+  const auto frames = film.empty() ? open(locator)
+                                   : imaging::prepare_frames(imaging::open_frames(film), film.string(),
+                                                             options.locating, locator);
+  const imaging::Region region = imaging::region_of(options.locating);
+  imaging::RegionFrames seen(*frames, region);
+  imaging::FramesAhead ahead(seen);
+  const imaging::OpenAtScale left_open{.polarity = !options.locating.dark && !locator.preprocess.bright,
+                                       .refiner = !options.locating.refine_given && !filmed.cell.refine};
+  if (const auto refiner =
+          check_beads_at_scale(ahead, locator, left_open, options.request.cell_file, options.threads)) {
+    filmed.cell.refine = refiner;
+    filmed.found_refiner = fmt::format(
+        "the method \"{}\" finds few beads of the stated scale, so that \"{}\" locates them: state "
+        "camera.refine = \"{}\"",
+        locator.refine.method, *refiner, *refiner);
+  }
+  return filmed;
+}
+
 FilmedCell stated_cell(const FilmOptions& options, const imaging::FrameRange& range) {
-  FilmedCell stated{.cell = imaging::resolve_cell(options.request), .source = {}, .measured_drive = {}};
+  FilmedCell stated{.cell = imaging::resolve_cell(options.request),
+                    .source = {},
+                    .measured_drive = {},
+                    .found_refiner = {}};
   const imaging::StatedPhases phases =
       imaging::stated_phases(options.request.phase, stated.cell, options.request.cell_file);
   stated.source = phases.source;
@@ -62,9 +101,7 @@ DriveCheck check_plate(const FilmedCell& filmed, const std::filesystem::path& fi
 TrackedFilm track_filmed_cell(const OpenFrames& open, FilmedCell filmed, DriveCheck by_plate,
                               const FilmOptions& options, const ProgressOf& progress, StageTimes* times) {
   const imaging::CellDescription& cell = filmed.cell;
-  const imaging::LocatorOptions locator = imaging::locator_of(
-      options.locating, cell.pixels_per_sigma,
-      options.request.cell_file.empty() ? std::nullopt : std::optional<bool>(cell.bright), cell.refine);
+  const imaging::LocatorOptions locator = locator_of(cell, options);
   const imaging::Region region = imaging::region_of(options.locating);
   const auto frames = open(locator);
   imaging::TrackedStack stack = [&] {
@@ -78,6 +115,7 @@ TrackedFilm track_filmed_cell(const OpenFrames& open, FilmedCell filmed, DriveCh
                                  .folder = options.folder},
                                 *bar, times);
   }();
+  if (!filmed.found_refiner.empty()) stack.settings_doubts.push_back(filmed.found_refiner);
   imaging::check_flat(options.locating.flat, stack.locator.preprocess.bright);
   return planned(std::move(filmed), std::move(stack), std::move(by_plate), options, times);
 }
@@ -86,6 +124,7 @@ TrackedFilm track_film(const OpenFrames& open, const std::filesystem::path& film
                        const ProgressOf& progress, StageTimes* times) {
   FilmedCell filmed = stated_cell(options, imaging::frames_of(options.locating));
   (void)filmed.cell.drive();  // refuse a contradictory drive before the work starts
+  filmed = check_beads(std::move(filmed), open, film, options, progress);
   DriveCheck by_plate = check_plate(filmed, film, options, progress, times);
   return track_filmed_cell(open, std::move(filmed), std::move(by_plate), options, progress, times);
 }

@@ -37,6 +37,8 @@ struct FilmedCell {
   imaging::PhaseSource source;
   /// The drive as measured on the plate, a sentence; empty if the cell states it.
   std::string measured_drive;
+  /// The refiner as the frames show it, a sentence without a full stop; empty if the cell's discs are found.
+  std::string found_refiner;
 };
 
 /// A tracked film. Its trajectory is written by write_trajectory(stack, plan, sink).
@@ -55,13 +57,20 @@ using OpenFrames = std::function<std::unique_ptr<imaging::FrameSource>(const ima
 /// \throws ConfigError, InputError as resolve_cell, stated_phases, lock_of_chosen
 FilmedCell stated_cell(const FilmOptions& options, const imaging::FrameRange& range);
 
-/// Step 2: checks the stated drive against the motion of the plate. Nothing is compared if there is no drive,
+/// Step 2: where the cell states the scale of the beads, checks it, and their polarity, by the first frames.
+/// If the default refiner does not find the beads there and another one does, the cell has that one then.
+/// \param film file or folder of the frames; empty for frames in memory
+/// \throws ConfigError as check_beads_at_scale; InputError as `open`
+FilmedCell check_beads(FilmedCell filmed, const OpenFrames& open, const std::filesystem::path& film,
+                       const FilmOptions& options, const ProgressOf& progress);
+
+/// Step 3: checks the stated drive against the motion of the plate. Nothing is compared if there is no drive,
 /// if it was measured, or if it is trusted.
 /// \param film file or folder of the frames; empty for frames in memory, in which nothing is compared
 DriveCheck check_plate(const FilmedCell& filmed, const std::filesystem::path& film,
                        const FilmOptions& options, const ProgressOf& progress, StageTimes* times = nullptr);
 
-/// Step 3: locates and links the beads. If the plate did not decide, checks the stated drive by the motion of
+/// Step 4: locates and links the beads. If the plate did not decide, checks the stated drive by the motion of
 /// the bed. Records the check in the plan.
 /// \param progress makes the progress of the stage "track"
 /// \param times receives the times of the stages of track_stack, and of "plan" and "drive check"; null: not
@@ -71,7 +80,7 @@ TrackedFilm track_filmed_cell(const OpenFrames& open, FilmedCell filmed, DriveCh
                               const FilmOptions& options, const ProgressOf& progress,
                               StageTimes* times = nullptr);
 
-/// All three steps.
+/// All four steps.
 /// \throws as they do
 TrackedFilm track_film(const OpenFrames& open, const std::filesystem::path& film, const FilmOptions& options,
                        const ProgressOf& progress, StageTimes* times = nullptr);

@@ -16,7 +16,8 @@ namespace {
 
 constexpr int kBorder = 3;      // px; width of the dark border that makes a wall
 constexpr int kWallMargin = 6;  // px; distance from its edges at which a wall shows its own level
-constexpr double kEdge = 3.2;   // half width of an edge, standard deviations of the blur
+constexpr double kUsualBlur_px = 0.9;
+constexpr double kEdge = 3.2;  // half width of an edge, standard deviations of the blur
 // A bead that transmits less than this share of the light hides the edge behind it. With 0.75 the edges of an
 // agitated bed filmed with an exposure were off by 0.01 px: each bead is smeared along its own path, and its
 // fitted disc is not.
@@ -103,7 +104,7 @@ double normal_density(double x) {
 cv::Mat1f light_past_beads(const Located& located, cv::Size size) {
   constexpr double kReach = 4;  // beyond the rim, standard deviations of the blur
   cv::Mat1f share(size, 1.0F);
-  const double s = located.blur_px;
+  const double s = located.blur_px > 0 ? located.blur_px : kUsualBlur_px;  // a shared profile has none
   for (const Detection& bead : located.beads) {
     const double reach = bead.radius + kReach * s, edge = bead.radius - s * s / (2 * bead.radius);
     const int left = std::max(0, cvCeil(bead.x - reach)),
@@ -311,9 +312,10 @@ std::optional<Step> fit_step(const Window& w, double start, double s, bool free_
 
 }  // namespace
 
-CellEdges find_cell_edges(const cv::Mat& picture, bool bright, double diameter_px) {
-  constexpr double kCornerReach = 4.5;                                // blurs
-  constexpr double kStartBlur = 0.9, kMaxBlur = 5, kMaxError = 0.12;  // px
+CellEdges find_cell_edges(const cv::Mat& picture, const BeadsAtEdges& beads) {
+  const auto& [bright, diameter_px, refine] = beads;
+  constexpr double kCornerReach = 4.5;              // blurs
+  constexpr double kMaxBlur = 5, kMaxError = 0.12;  // px
   cv::Mat grey = picture;
   Prepared image = prepare(grey, {.bright = bright}, 0.5 * diameter_px);
   if (bright) {
@@ -330,6 +332,7 @@ CellEdges find_cell_edges(const cv::Mat& picture, bool bright, double diameter_p
   LocatorOptions locator;
   locator.diameter_px = diameter_px;
   locator.preprocess.bright = bright;
+  locator.refine.method = refine;
   const Located located = locate(grey, locator);
   const cv::Mat1f share = light_past_beads(located, d.size());
   const auto background = bright ? clipped_background(grey, d) : std::nullopt;
@@ -360,7 +363,7 @@ CellEdges find_cell_edges(const cv::Mat& picture, bool bright, double diameter_p
     return w;
   };
   // Blur: the side walls share one blur, and the plate has its own.
-  double blur[2] = {kStartBlur, kStartBlur};
+  double blur[2] = {kUsualBlur_px, kUsualBlur_px};
   for (int round = 0; round < 2; ++round) {
     std::vector<double> found[2];
     for (const Line& line : lines) {

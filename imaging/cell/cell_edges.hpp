@@ -16,6 +16,7 @@
 /// further inside the cell, never outside.
 
 #include <opencv2/core.hpp>
+#include <string>
 #include <vector>
 
 #include "imaging/geometry/pixel_point.hpp"
@@ -35,10 +36,15 @@ struct CellEdges {
   double blur_px = 0;  ///< standard deviation of the plate's blur, including the pixel width; 0: no edge
 };
 
+/// What is known of the beads, which hide the edges that they touch.
+struct BeadsAtEdges {
+  bool bright = false;           ///< beads, walls and plate are brighter than the background
+  double diameter_px = 0;        ///< 3 .. 400
+  std::string refine = "exact";  ///< method that suits the discs, one of refiner_names()
+};
+
 /// Finds the edges. A side has no points unless the picture is dark there up to its border, over at least
 /// 3 px, or a dark bar of at least 4 px crosses at least a third of the lines. Pure.
-/// \param bright beads, walls and plate are brighter than the background
-/// \param diameter_px bead diameter
-CellEdges find_cell_edges(const cv::Mat& picture, bool bright, double diameter_px);
+CellEdges find_cell_edges(const cv::Mat& picture, const BeadsAtEdges& beads);
 
 }  // namespace twincell::imaging

@@ -46,31 +46,41 @@ std::string sizes_that_differ(const LocatorOptions& beads, double pixels_per_sig
                             : fmt::format("{:.4g}", smallest);
 }
 
-void check_bead_size(FramesAhead& frames, const LocatorOptions& given, const LocatorOptions& settled,
-                     int threads) {
-  constexpr double kNoLess = 0.95;
+std::optional<std::string> check_beads_at_scale(FramesAhead& frames, const LocatorOptions& given,
+                                                const OpenAtScale& open, const std::string& cell_file,
+                                                int threads) {
+  constexpr double kNoLess = 0.95, kMore = 1.2;  // of the area that the stated discs cover
   const double scale = given.diameter_px;
   const cv::Mat* const first = frames.look(0);
-  if (first == nullptr) return;
-  const Located stated = locate(*first, settled);
-  if (of_size(stated, scale)) return;
-  LocatorOptions open = given;
-  open.diameter_px = 0;
+  if (first == nullptr) return {};
+  const Located stated = locate(*first, configure_locator(frames, given, threads).locator);
+  if (of_size(stated, scale)) return {};
+  LocatorOptions searched = given;
+  searched.diameter_px = 0;
+  searched.polarity_known = !open.polarity;
   LocatorOptions found;
   try {
-    found = configure_locator(frames, open, threads).locator;
+    found = configure_locator(frames, searched, threads).locator;
   } catch (const NoDiscs&) {
-    return;
+    return {};
   }
-  const std::string sizes = sizes_that_differ(found, scale);
-  if (sizes.empty()) return;
-  // A wrong size found inside large beads covers less than they do.
-  if (covered(locate(*first, found).beads) < kNoLess * covered(stated.beads)) return;
-  throw ConfigError(
-      {.file = {}, .key = "camera.pixels_per_sigma"},
-      fmt::format("is {:g}, but the beads in the frames are {} px wide, and sigma is the bead diameter; "
-                  "correct the scale, or state the diameter of the beads (--diameter).",
-                  scale, sizes));
+  const double share = covered(locate(*first, found).beads) / covered(stated.beads);
+  if (const std::string sizes = sizes_that_differ(found, scale); !sizes.empty()) {
+    // A wrong size found inside large beads covers less than they do.
+    if (share < kNoLess) return {};
+    throw ConfigError(
+        {.file = cell_file, .key = "camera.pixels_per_sigma"},
+        fmt::format("is {:g}, but the beads in the frames are {} px wide, and sigma is the bead diameter; "
+                    "correct the scale, or state the diameter of the beads (--diameter).",
+                    scale, sizes));
+  }
+  if (share < kMore) return {};
+  if (found.preprocess.bright && !given.preprocess.bright)
+    throw ConfigError({.file = cell_file, .key = "camera.bright"},
+                      "is absent or false, but the beads in the frames are brighter than their surroundings; "
+                      "state camera.bright = true (or --dark if they are not).");
+  if (!open.refiner || found.refine.method == given.refine.method) return {};
+  return found.refine.method;
 }
 
 }  // namespace twincell::imaging

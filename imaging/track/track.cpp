@@ -209,8 +209,6 @@ TrackedStack track_stack(FrameSource& stack, const CellDescription& cell, const 
     const LocatorConfiguration found = configure_locator(frames, given.locator, given.threads);
     options.locator = found.locator;
     doubts = settings_doubts(found.choice, given.locator.refine.method);
-    if (given.locator.diameter_of_scale)
-      check_bead_size(frames, given.locator, options.locator, given.threads);
   }
   const Detections detected = detect(frames, cell, options, watched.size(), progress, times);
   // If the frame cuts beads, others enter and leave.

@@ -31,7 +31,8 @@ struct Found {
 Found look_at(const MemoryTrajectory& bed, const imaging::CameraOptions& camera) {
   test::FilmedFrames frames(test::film(bed, camera));
   Found found;
-  found.edges = read_stack_edges(frames, camera.bright, camera.pixels_per_sigma, 1);
+  found.edges =
+      read_stack_edges(frames, {.bright = camera.bright, .diameter_px = camera.pixels_per_sigma}, 1);
   found.geometry = fit_cell_geometry(found.edges);
   return found;
 }

@@ -45,7 +45,7 @@ TEST(RealBeads, SizesMatchTruthAndNoWallIsInvented) {
   EXPECT_NEAR(c.spread.value, spread, 3 * c.spread.error);
   // The flume is wider than the image: the rims of beads cut by the border are not side walls.
   const auto frames = imaging::open_frames(folder);
-  const CellGeometry g = fit_cell_geometry(read_stack_edges(*frames, false, mean, 1));
+  const CellGeometry g = fit_cell_geometry(read_stack_edges(*frames, {.diameter_px = mean}, 1));
   EXPECT_FALSE(g.has_left || g.has_right);
 }
 

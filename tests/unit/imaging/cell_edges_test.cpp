@@ -20,8 +20,9 @@ constexpr int kFine = 8;  // grid points a pixel
 /// \param thickness_px of walls and plate, which transmit a tenth and a fifth of the light; light is behind
 /// them. Infinite: they are opaque
 /// \param through share of the light that the beads transmit
+/// \param core further light in the middle of the beads, as in glass
 cv::Mat cell_with_beads(double gap_px, double blur_px, double noise, double thickness_px = HUGE_VAL,
-                        float through = 0) {
+                        float through = 0, double core = 0) {
   const cv::Size size(221, 181);
   cv::Mat1f fine(size * kFine, 1.0F);
   const auto at = [](int i) { return (i + 0.5) / kFine - 0.5; };
@@ -42,7 +43,8 @@ cv::Mat cell_with_beads(double gap_px, double blur_px, double noise, double thic
   for (const cv::Point2d& b : beads)
     for (int j = static_cast<int>((b.y - kRadius_px - 1) * kFine); at(j) < b.y + kRadius_px; ++j)
       for (int i = static_cast<int>((b.x - kRadius_px - 1) * kFine); at(i) < b.x + kRadius_px; ++i)
-        if (std::hypot(at(i) - b.x, at(j) - b.y) < kRadius_px) fine(j, i) = through;
+        if (const double r = std::hypot(at(i) - b.x, at(j) - b.y) / kRadius_px; r < 1)
+          fine(j, i) = through + static_cast<float>(core * std::exp(-std::pow(r / 0.45, 4)));
   cv::GaussianBlur(fine, fine, {}, blur_px * kFine, blur_px * kFine, cv::BORDER_REPLICATE);
   cv::Mat1f light;
   cv::resize(fine, light, size, 0, 0, cv::INTER_AREA);
@@ -74,7 +76,8 @@ TEST(CellEdges, BeadsThatTouchTheEdgesDoNotMoveThem) {
   const auto y = [](const EdgePoint& p) { return p.at.y_px; };
   for (const double gap_px : {0.0, 0.5, 1.5})
     for (const double blur_px : {0.7, 1.0}) {
-      const CellEdges edges = find_cell_edges(cell_with_beads(gap_px, blur_px, 1), false, 2 * kRadius_px);
+      const CellEdges edges =
+          find_cell_edges(cell_with_beads(gap_px, blur_px, 1), {.diameter_px = 2 * kRadius_px});
       ASSERT_GE(edges.left.size(), 40U) << gap_px;
       ASSERT_GE(edges.right.size(), 40U) << gap_px;
       ASSERT_GE(edges.plate.size(), 40U) << gap_px;
@@ -95,7 +98,7 @@ TEST(CellEdges, BeadsThatArePalerThanTheWallsDoNotMoveThem) {
   const auto drawn = [](double edge) { return std::round((edge + 0.5) * kFine) / kFine - 0.5; };
   for (const float through : {0.06F, 0.15F, 0.3F}) {
     const CellEdges edges =
-        find_cell_edges(cell_with_beads(0, 0.9, 1, HUGE_VAL, through), false, 2 * kRadius_px);
+        find_cell_edges(cell_with_beads(0, 0.9, 1, HUGE_VAL, through), {.diameter_px = 2 * kRadius_px});
     ASSERT_GE(edges.left.size(), 40U) << through;
     ASSERT_GE(edges.right.size(), 40U) << through;
     ASSERT_GE(edges.plate.size(), 40U) << through;
@@ -103,6 +106,23 @@ TEST(CellEdges, BeadsThatArePalerThanTheWallsDoNotMoveThem) {
     EXPECT_NEAR(offset_of(edges.right, drawn(kRight_px), x), 0, kBound_px) << through;
     EXPECT_NEAR(offset_of(edges.plate, drawn(kPlate_px), y), 0, kBound_px) << through;
   }
+}
+
+// Glass beads have a dark rim and a bright middle. Those on the plate hide its edge, as dark ones do (before,
+// the plate was up to 2 px too high while the bed lay on it).
+TEST(CellEdges, GlassBeadsDoNotMoveThem) {
+  constexpr double kBound_px = 0.02;
+  const auto x = [](const EdgePoint& p) { return p.at.x_px; };
+  const auto y = [](const EdgePoint& p) { return p.at.y_px; };
+  const auto drawn = [](double edge) { return std::round((edge + 0.5) * kFine) / kFine - 0.5; };
+  const CellEdges edges = find_cell_edges(cell_with_beads(0, 0.7, 1, HUGE_VAL, 0.08F, 0.97),
+                                          {.diameter_px = 2 * kRadius_px, .refine = "profile"});
+  ASSERT_GE(edges.left.size(), 40U);
+  ASSERT_GE(edges.right.size(), 40U);
+  ASSERT_GE(edges.plate.size(), 40U);
+  EXPECT_NEAR(offset_of(edges.left, drawn(kLeft_px), x), 0, kBound_px);
+  EXPECT_NEAR(offset_of(edges.right, drawn(kRight_px), x), 0, kBound_px);
+  EXPECT_NEAR(offset_of(edges.plate, drawn(kPlate_px), y), 0, kBound_px);
 }
 
 // Walls and plate are bars with light behind them. The bound is wider than above, because the level of a bar
@@ -113,7 +133,7 @@ TEST(CellEdges, BarsWithLightBehindThemAreWalls) {
   const auto y = [](const EdgePoint& p) { return p.at.y_px; };
   for (const double thickness_px : {8.0, 14.0}) {
     const CellEdges edges =
-        find_cell_edges(cell_with_beads(0.5, 1.0, 1, thickness_px), false, 2 * kRadius_px);
+        find_cell_edges(cell_with_beads(0.5, 1.0, 1, thickness_px), {.diameter_px = 2 * kRadius_px});
     ASSERT_GE(edges.left.size(), 40U) << thickness_px;
     ASSERT_GE(edges.right.size(), 40U) << thickness_px;
     ASSERT_GE(edges.plate.size(), 40U) << thickness_px;
@@ -139,7 +159,7 @@ TEST(CellEdges, RowsOfBeadsAreNoBars) {
     cv::resize(fine, light, cv::Size(200, 200), 0, 0, cv::INTER_AREA);
     cv::Mat1b grey;
     light.convertTo(grey, CV_8U, 200, 10);
-    const CellEdges edges = find_cell_edges(grey, false, diameter_px);
+    const CellEdges edges = find_cell_edges(grey, {.diameter_px = diameter_px});
     EXPECT_TRUE(edges.left.empty()) << diameter_px;
     EXPECT_TRUE(edges.right.empty()) << diameter_px;
     EXPECT_TRUE(edges.plate.empty()) << diameter_px;

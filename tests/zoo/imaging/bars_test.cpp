@@ -158,7 +158,7 @@ TEST(BarsOnly, RowsOfBeadsAreNotBars) {
 TEST(BarsOnly, WallsThroughTheLowerBorderHaveEdges) {
   for (const double tilt : {0.0, 1.0, -2.0}) {
     const Scene scene = scene_of({.thickness = 22, .tilt_degrees = tilt, .through_border = true});
-    const imaging::CellEdges edges = imaging::find_cell_edges(scene.exhibit.picture, false, 22);
+    const imaging::CellEdges edges = imaging::find_cell_edges(scene.exhibit.picture, {.diameter_px = 22});
     EXPECT_GE(edges.left.size(), 40U) << tilt;
     EXPECT_GE(edges.right.size(), 40U) << tilt;
     EXPECT_GE(edges.plate.size(), 40U) << tilt;
