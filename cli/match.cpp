@@ -19,6 +19,7 @@
 #include "imaging/stack/different_stacks.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "twin/cell_names.hpp"
+#include "twin/strengths.hpp"
 #include "twin/twin.hpp"
 
 namespace twincell::cli {
@@ -167,6 +168,19 @@ std::vector<twin::Twin> make_twins(const Common& common, const MatchOptions& o,
   return twins;
 }
 
+/// Whether cells that state Gamma and amplitude state strengths of other stacks.
+std::string strengths_doubt(const twin::StacksAndCells& pairs) {
+  std::vector<twin::StackDrive> drives;
+  for (std::size_t i = 0; i < pairs.stacks.size(); ++i) {
+    const imaging::CellDescription cell = imaging::read_cell(pairs.cells[i]);
+    drives.push_back({.name = pairs.stacks[i].string(),
+                      .gamma = cell.drive_spec.gamma.value_or(0),
+                      .amplitude = cell.drive_spec.amplitude.value_or(0),
+                      .frames_per_cycle = cell.phase_lock.frames_per_cycle});
+  }
+  return twin::strengths_doubt(drives);
+}
+
 nlohmann::json as_json(const std::vector<twin::Twin>& twins) {
   if (twins.size() == 1) return as_json(twins.front());
   nlohmann::json json;
@@ -180,12 +194,15 @@ void run(const Common& common, const MatchOptions& o) {
   // A mistake in the last cell or stack must not appear after the first hour.
   for (const auto& cell : pairs.cells) (void)imaging::read_cell(cell);
   imaging::require_different_stacks(pairs.stacks);
+  const std::string doubt = strengths_doubt(pairs);
+  if (!doubt.empty()) note(common, doubt);
   const std::vector<twin::Twin> twins = make_twins(common, o, pairs);
   std::string text;
   for (const twin::Twin& twin : twins) text += as_text(twin);
   const twin::ComparingOptions options = comparing(o, common, twins);
   analysis::Comparison compared = compare_sides(common, options);
   std::vector<std::string> notes;
+  if (!doubt.empty()) notes.push_back(doubt);
   for (std::size_t i = 0; i < twins.size(); ++i)
     for (std::string& note : notes_of(twins[i], pairs.stacks[i])) notes.push_back(std::move(note));
   compared.notes.insert(compared.notes.begin(), notes.begin(), notes.end());

@@ -24,6 +24,7 @@
 #include "twin/cell_draft.hpp"
 #include "twin/cell_names.hpp"
 #include "twin/cell_picture.hpp"
+#include "twin/strengths.hpp"
 
 namespace twincell::cli {
 namespace {
@@ -193,6 +194,21 @@ void note_different_cells(const Common& common, const nlohmann::json& cells) {
   }
 }
 
+/// Notes strengths that do not belong to the amplitudes of their stacks, as in a wrong order.
+void note_strengths(const Common& common, const nlohmann::json& cells, const std::vector<double>& gammas) {
+  std::vector<twin::StackDrive> drives;
+  for (std::size_t i = 0; i < gammas.size(); ++i) {
+    const nlohmann::json& measured = cells[i]["measured"];
+    if (measured.contains("drive.amplitude_sigma"))
+      drives.push_back({.name = cells[i]["stack"].get<std::string>(),
+                        .gamma = gammas[i],
+                        .amplitude = measured["drive.amplitude_sigma"][0]["value"].get<double>(),
+                        .frames_per_cycle = cells[i].value("frames_per_cycle", 0)});
+  }
+  if (const std::string doubt = twin::strengths_doubt(drives); !doubt.empty())
+    note(common, "--drive-gamma: " + doubt);
+}
+
 void run(const Common& common, NewOptions& o) {
   if (o.stacks.empty())
     throw ConfigError({.file = {}, .key = "new"}, "no stack is named; give at least one stack of frames.");
@@ -232,6 +248,7 @@ void run(const Common& common, NewOptions& o) {
                        [](const nlohmann::json& m) { return m["what"] == twin::kFramesPerCycle; });
   });
   note_different_cells(common, cells);
+  note_strengths(common, cells, o.gammas);
   if (open > 0)
     said += fmt::format("{} value{} still needed: look for \"FILL IN\" in the file{}.\n", open,
                         open == 1 ? " is" : "s are", several ? "s" : "");

@@ -18,6 +18,7 @@
 #include "sim/run/make_solver.hpp"
 #include "sim/run/simulation.hpp"
 #include "sim/scene/read_scene.hpp"
+#include "sim/scene/scene_layers.hpp"
 #include "trajectory/boundary_words.hpp"
 #include "trajectory/calibration_file.hpp"
 #include "trajectory/formats/h5md_file.hpp"
@@ -189,7 +190,7 @@ std::vector<std::string> write_experiment(calibration::TrackedFilm& film, const 
 void simulate_twins(const std::string& scene, Twin& twin, const TwinOptions& options, const fs::path& folder,
                     const TwinProvenance& provenance, const ProgressOf& progress) {
   for (int k = 1; k <= options.twins; ++k) {
-    std::vector<std::string> assignments = options.assignments;
+    std::vector<std::string> assignments;  // those of the options are in the scene
     if (k > 1) {
       assignments.push_back(fmt::format("start.seed={}", k));
       assignments.push_back(
@@ -199,7 +200,7 @@ void simulate_twins(const std::string& scene, Twin& twin, const TwinOptions& opt
     const sim::Scene read = sim::read_scene_text(scene, twin.scene.string(), assignments, folder);
     const auto bar = progress(fmt::format("simulating twin {}", k));
     const double fall = simulate(read, twin.simulations.back(), provenance, options.film.threads, *bar);
-    if (k == 1) twin.fall = fall, twin.discarded = read.discard;
+    if (k == 1) twin.fall = fall, twin.discarded = read.discard, twin.cycles = read.cycles;
   }
 }
 
@@ -207,7 +208,7 @@ void simulate_twins(const std::string& scene, Twin& twin, const TwinOptions& opt
 
 std::string twin_scene(const std::string& base, const std::string& base_name,
                        const imaging::CellDescription& cell, const fs::path& experiment, std::size_t frame,
-                       std::int64_t cycles) {
+                       std::int64_t cycles, const std::vector<std::string>& assignments) {
   const std::string tilt =
       cell.side_tilt && cell.sides == Boundary::wall
           ? fmt::format("side_tilt = [{:.17g}, {:.17g}]\n", (*cell.side_tilt)[0], (*cell.side_tilt)[1])
@@ -246,6 +247,7 @@ std::string twin_scene(const std::string& base, const std::string& base_name,
   scene.yield_to(measured, "drive", {"amplitude", "omega", "frequency", "gamma", "k_m", "peak_velocity"});
   scene.yield_to(measured, "start", {"kind", "from", "frame", "velocity_scale", "fraction"});
   scene.overlay(std::move(measured));
+  sim::assign(scene, assignments);
   return resolved_text(scene);
 }
 
@@ -256,11 +258,13 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
   Twin twin{.experiment = folder / "experiment.h5", .scene = folder / "scene.toml"};
   twin.drive = filmed.measured_drive;
   const std::string base = options.scene.empty() ? std::string() : read_text_file(options.scene);
-  const auto scene_text = [&](const imaging::CellDescription& cell, std::size_t frame, std::int64_t cycles) {
-    return twin_scene(base, options.scene.string(), cell, twin.experiment.filename(), frame, cycles);
+  const auto scene_text = [&](const imaging::CellDescription& cell, std::size_t frame, std::int64_t cycles,
+                              const std::vector<std::string>& assignments) {
+    return twin_scene(base, options.scene.string(), cell, twin.experiment.filename(), frame, cycles,
+                      assignments);
   };
   try {
-    (void)sim::read_scene_text(scene_text(with_phases(filmed.cell), 0, 1), twin.scene.string(),
+    (void)sim::read_scene_text(scene_text(with_phases(filmed.cell), 0, 1, {}), twin.scene.string(),
                                options.assignments, folder);
   } catch (const ConfigError& e) {
     // The user knows the file that was named, not the scene that is made of it and of the cell.
@@ -296,7 +300,7 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
     throw ConfigError({.file = {}, .key = "--discard"},
                       fmt::format("is {}, but {} shows only {}.", options.discard, options.stack.string(),
                                   plural(twin.cycles, "cycle")));
-  const std::string below = scene_text(film.cell, first.frame, first.cycles);
+  const std::string below = scene_text(film.cell, first.frame, first.cycles, options.assignments);
   const std::string scene = kSceneHead + checksum_line(below) + below;
   write_text_file(twin.scene, scene, Product::text("a scene", kSceneHead));
   simulate_twins(scene, twin, options, folder, provenance, progress);

@@ -66,12 +66,13 @@ struct Twin {
 
 /// Scene of the twin as TOML: `base` (text of a scene, or empty) with width, sides, drive and scale of the
 /// cell. It starts from frame `frame` of `experiment` and lasts `cycles` cycles with the cell's number of
-/// phases.
+/// phases. \param assignments "section.key=value", which override all of these
 /// \throws ConfigError for open sides, or a scale that differs from that of the cell
 /// \pre the cell states width and drive
 std::string twin_scene(const std::string& base, const std::string& base_name,
                        const imaging::CellDescription& cell, const std::filesystem::path& experiment,
-                       std::size_t frame, std::int64_t cycles);
+                       std::size_t frame, std::int64_t cycles,
+                       const std::vector<std::string>& assignments = {});
 
 /// Writes experiment.h5, scene.toml and simulation-1.h5 … into `folder`, which is created if needed. Drive
 /// and phases that the cell does not state are measured on the plate (plate_drive.hpp).
