@@ -253,6 +253,9 @@ void add_match(CLI::App& program, Common& common) {
       "--trust-stated-drive", o->twin.film.trust_stated_drive,
       "Use the drive and the frames per cycle that the cell states, even if the plate or the bed in the film "
       "moves differently");
+  verb.add_flag("--trust-stated-cell", o->twin.trust_stated_cell,
+                "Use walls and origin that the cell states, even if the bed in the film cannot lie between "
+                "them: a bed of two layers that stays a bead diameter away from a wall or the plate");
   verb.add_option("--range", o->twin.film.link.range_diameters,
                   "Largest distance of a bead from its predicted position, bead diameters, above 0, at most "
                   "10; default: 2");

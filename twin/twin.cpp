@@ -171,6 +171,21 @@ void require_agreement(const calibration::DriveCheck& check, const TwinOptions& 
                       check.disagreement + "; correct one of them, or use --trust-stated-drive.");
 }
 
+/// \throws ConfigError if the bed cannot lie in the cell that is stated
+void require_bed_in_cell(const calibration::TrackedFilm& film, const TwinOptions& options) {
+  // A part of the picture need not show the beads at the walls.
+  const imaging::LocatingRequest& part = options.film.locating;
+  if (options.trust_stated_cell || !part.roi.empty() || !part.mask.empty()) return;
+  struct Nowhere : TrajectorySink {
+    void append(const Frame& /*frame*/) override {}
+  } nowhere;
+  imaging::BedInCell watched(nowhere, film.plan.info, film.cell, film.stack.height_px);
+  imaging::write_trajectory(film.stack, film.plan, watched);
+  if (const std::string contradiction = watched.contradiction(); !contradiction.empty())
+    throw ConfigError({.file = options.cell_file(), .key = "cell"},
+                      contradiction + "; correct it, or use --trust-stated-cell.");
+}
+
 /// Writes the tracked film into `output`. \returns the doubts about it, in sentences
 std::vector<std::string> write_experiment(calibration::TrackedFilm& film, const fs::path& output,
                                           const TwinProvenance& provenance) {
@@ -288,6 +303,7 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
   calibration::TrackedFilm film =
       calibration::track_filmed_cell(open, std::move(filmed), std::move(check), of_film, progress);
   require_agreement(film.check, options);
+  require_bed_in_cell(film, options);
   film.cell.phase_lock.frames_per_cycle = film.stack.phases.frames_per_cycle;
   twin.doubts = write_experiment(film, twin.experiment, provenance);
   twin.phases = film.stack.phases;

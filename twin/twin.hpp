@@ -28,7 +28,8 @@ struct TwinOptions {
   /// Number of simulations. The first starts exactly from the measured positions. In each of the others every
   /// bead is shifted at random, with the simulation's own seed, by the uncertainty of the measured positions.
   int twins = 3;
-  std::int64_t discard = 0;  ///< cycles that the comparison will leave out of both sides
+  bool trust_stated_cell = false;  ///< do not refuse a cell that the bed does not fill
+  std::int64_t discard = 0;        ///< cycles that the comparison will leave out of both sides
 
   /// CELL.toml of the stack.
   [[nodiscard]] const std::string& cell_file() const { return film.request.cell_file; }

@@ -39,26 +39,32 @@ void BedInCell::append(const Frame& frame) {
   writer_.append(frame);
 }
 
-std::vector<std::string> BedInCell::doubts() const {
+bool BedInCell::is_layered() const {
+  constexpr double kMinLayers = 2;
+  return width_ > 0 && !beads_.empty() && upper_median(beads_) >= kMinLayers * width_;
+}
+
+std::vector<BedInCell::Finding> BedInCell::findings() const {
   constexpr double kMaxGap = 0.35;        // bead diameters
   constexpr double kRestQuantile = 0.05;  // of the gaps above the plate: the bed rests on it
-  constexpr double kMinLayers = 2;
   constexpr std::size_t kMinFrames = 10;
-  std::vector<std::string> all;
+  std::vector<Finding> all;
   if (left_.size() < kMinFrames) return all;
   const auto side = [&](const char* wall, double gap) {
     if (gap > kMaxGap)
-      all.push_back(fmt::format(
-          "the beads come no closer to the {} wall than {:.2f} bead diameters: the wall is elsewhere than "
-          "cell.width and camera.origin_px state, or the picture does not show the beads beside it.",
-          wall, gap));
-    else if (gap < -kMaxGap)
       all.push_back(
-          fmt::format("the beads reach {:.2f} bead diameters into the {} wall: it is elsewhere than "
-                      "cell.width and camera.origin_px state.",
-                      -gap, wall));
+          {fmt::format("the beads come no closer to the {} wall than {:.2f} bead diameters: the wall is "
+                       "elsewhere than cell.width and camera.origin_px state, or the picture does not show "
+                       "the beads beside it",
+                       wall, gap),
+           gap});
+    else if (gap < -kMaxGap)
+      all.push_back({fmt::format("the beads reach {:.2f} bead diameters into the {} wall: it is elsewhere "
+                                 "than cell.width and camera.origin_px state",
+                                 -gap, wall),
+                     -gap});
   };
-  if (width_ > 0 && upper_median(beads_) >= kMinLayers * width_) {
+  if (is_layered()) {
     side("left", upper_median(left_));
     side("right", upper_median(right_));
   }
@@ -69,15 +75,30 @@ std::vector<std::string> BedInCell::doubts() const {
   std::nth_element(gaps.begin(), at, gaps.end());
   if (*at > kMaxGap)
     all.push_back(
-        fmt::format("the lowest bead comes no closer to the plate than {:.2f} bead diameters: the plate is "
-                    "elsewhere than camera.origin_px and the phases state.",
-                    *at));
+        {fmt::format("the lowest bead comes no closer to the plate than {:.2f} bead diameters: the plate is "
+                     "elsewhere than camera.origin_px and the phases state, or the picture is upside down",
+                     *at),
+         *at});
   else if (*at < -kMaxGap)
-    all.push_back(
-        fmt::format("beads are up to {:.2f} bead diameters beneath the plate: it is elsewhere than "
-                    "camera.origin_px and the phases state.",
-                    -*at));
+    all.push_back({fmt::format("beads are up to {:.2f} bead diameters beneath the plate: it is elsewhere "
+                               "than camera.origin_px and the phases state",
+                               -*at),
+                   -*at});
   return all;
+}
+
+std::vector<std::string> BedInCell::doubts() const {
+  std::vector<std::string> all;
+  for (const Finding& f : findings()) all.push_back(f.sentence + ".");
+  return all;
+}
+
+std::string BedInCell::contradiction() const {
+  constexpr double kImpossible = 1;  // bead diameters
+  if (!is_layered()) return {};
+  for (const Finding& f : findings())
+    if (f.gap > kImpossible) return f.sentence;
+  return {};
 }
 
 }  // namespace twincell::imaging

@@ -23,8 +23,18 @@ class BedInCell : public TrajectorySink {
   /// wall, and the gap at the plate that 5 % of the frames fall below, each if it exceeds 0.35 bead diameters
   /// to either side. Walls are checked for beds of two layers and more.
   [[nodiscard]] std::vector<std::string> doubts() const;
+  /// The first of these in a bed of two layers and more with a gap above one bead diameter, which no bed has;
+  /// empty if there is none.
+  [[nodiscard]] std::string contradiction() const;
 
  private:
+  struct Finding {
+    std::string sentence;
+    double gap;  ///< bead diameters
+  };
+  [[nodiscard]] bool is_layered() const;
+  [[nodiscard]] std::vector<Finding> findings() const;
+
   TrajectorySink& writer_;
   const TrajectoryInfo& info_;
   double width_ = 0;                                  ///< sigma; 0: not checked

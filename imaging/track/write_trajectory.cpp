@@ -59,8 +59,8 @@ TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell
 
 std::string TrackPlan::in_plate_note() const {
   if (in_plate == 0) return {};
-  return fmt::format("{} inside the plate {} left out: text or marks, not beads.", plural(in_plate, "track"),
-                     in_plate == 1 ? "is" : "are");
+  return fmt::format("{} inside the plate {} left out: marks, text or false discs, not beads.",
+                     plural(in_plate, "track"), in_plate == 1 ? "is" : "are");
 }
 
 std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, const CellDescription& cell) {

@@ -169,6 +169,7 @@ const std::map<std::string, std::string> kQuantities = {
     {"trials", "column of the number of trials"},
     {"trigger-jitter", "scatter of the trigger time"},
     {"trigger-offset", "delay of the trigger time"},
+    {"trust-stated-cell", "no check of the stated walls and origin"},
     {"trust-stated-drive", "no check of the stated drive"},
     {"truth", "ground truth"},
     {"twins", "number of twins"},

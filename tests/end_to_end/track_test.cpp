@@ -374,9 +374,9 @@ TEST(Track, DigitsInADarkPlateAreNoBeads) {
   const auto said = nlohmann::json::parse(ran.out);
   const int digits = said["tracks"].get<int>() - said["slots"].get<int>();
   EXPECT_GE(digits, 3);  // one or more in each cycle
-  EXPECT_NE(
-      ran.err.find(fmt::format("{} tracks inside the plate are left out: text or marks, not beads.", digits)),
-      std::string::npos)
+  EXPECT_NE(ran.err.find(fmt::format(
+                "{} tracks inside the plate are left out: marks, text or false discs, not beads.", digits)),
+            std::string::npos)
       << ran.err;
   EXPECT_EQ(ran.err.find("beneath the plate"), std::string::npos) << ran.err;
   EXPECT_EQ(said["slots"], 100);

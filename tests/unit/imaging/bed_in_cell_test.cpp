@@ -14,7 +14,8 @@ namespace {
 
 /// What is said of a bed 10 beads wide and 4 high that rests on its plate in half of each cycle, if the cell
 /// is stated to be so wide and begins so far left and below.
-std::string said(double width, double left = 0, double low = 0, double origin_row = 200, int layers = 4) {
+std::string said(double width, double left = 0, double low = 0, double origin_row = 200, int layers = 4,
+                 std::string* contradiction = nullptr) {
   CellDescription cell;
   cell.origin = PixelPoint{20, origin_row};
   cell.pixels_per_sigma = 12;
@@ -37,6 +38,7 @@ std::string said(double width, double left = 0, double low = 0, double origin_ro
   EXPECT_EQ(out.n_frames(), 40U);
   std::string all;
   for (const std::string& doubt : watched.doubts()) all += doubt + "\n";
+  if (contradiction != nullptr) *contradiction = watched.contradiction();
   return all;
 }
 
@@ -53,6 +55,21 @@ TEST(BedInCell, WallsThatNoBeadTouchesAreDoubtful) {
   EXPECT_NE(said(11, 1).find("no closer to the left wall than 1.00"), std::string::npos);
   EXPECT_NE(said(9.5).find("the beads reach 0.50 bead diameters into the right wall"), std::string::npos);
   EXPECT_EQ(said(11, 0, 0, 200, 1), "") << "a single layer need not reach the walls";
+}
+
+TEST(BedInCell, ABedOfLayersABeadAwayContradictsTheCell) {
+  const auto contradiction = [](double width, double left, double low, int layers = 4) {
+    std::string found;
+    (void)said(width, left, low, 200, layers, &found);
+    return found;
+  };
+  EXPECT_EQ(contradiction(10, 0, 0), "");
+  EXPECT_EQ(contradiction(10.9, 0, 0), "") << "doubtful, but possible";
+  EXPECT_NE(contradiction(11.2, 0, 0).find("right wall than 1.20 bead diameters"), std::string::npos);
+  EXPECT_NE(contradiction(8.8, 0, 0).find("1.20 bead diameters into the right wall"), std::string::npos);
+  EXPECT_NE(contradiction(10, 0, 2.85).find("or the picture is upside down"), std::string::npos);
+  EXPECT_NE(contradiction(10, 0, -1.5).find("beneath the plate"), std::string::npos);
+  EXPECT_EQ(contradiction(10, 0, 2.85, 1), "") << "a few beads may fly";
 }
 
 TEST(BedInCell, APlateOnWhichTheBedDoesNotRestIsDoubtful) {
