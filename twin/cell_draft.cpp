@@ -60,6 +60,7 @@ class Draft {
   /// \pre spacing_is_clear() \param width of the discs
   void scale_by_spacing(const calibration::Estimate& width) {
     scale_ = s_.beads->spacing;
+    disc_width_ = width;
     how_scale_ = fmt::format("distance of touching beads in {} frames; the discs are {} px wide",
                              s_.beads->frames, value_text(width));
   }
@@ -69,6 +70,7 @@ class Draft {
     if (s_.diameter_stated) {
       scale_ = calibration::Estimate{s_.diameter_px, 0};
       how_scale_ = fmt::format("stated with --diameter; the discs are {} px wide", value_text(seen));
+      disc_width_ = seen;
     } else if (spacing_is_clear()) {
       scale_by_spacing(seen);
     }
@@ -77,17 +79,19 @@ class Draft {
   /// Touching beads are one diameter apart. Discs of another width have rims that glare, overexposure or a
   /// grey level of their own moves.
   void scale_of_plain_discs(const calibration::Estimate& width) {
-    constexpr double kMinErrors = 5, kMinDifference = 1e-3;
+    constexpr double kMinErrors = 5, kMinDifference = 1e-3, kNoted = 0.02;
     if (s_.diameter_stated || !spacing_is_clear()) return;
     const calibration::Estimate& apart = *s_.beads->spacing;
     const double least =
         std::max(kMinErrors * std::hypot(width.error, apart.error), kMinDifference * apart.value);
     if (std::abs(width.value - apart.value) <= least) return;
     scale_by_spacing(width);
-    out_.notes.push_back(fmt::format(
-        "the discs are {} +- {} px wide, and touching ones {} +- {} px apart: glare, exposure or their grey "
-        "level moves the rims; the distance is taken for the bead diameter",
-        value_text(width), error_text(width.error), value_text(apart), error_text(apart.error)));
+    if (std::abs(width.value - apart.value) > kNoted * apart.value)
+      out_.notes.push_back(fmt::format(
+          "the discs are {} +- {} px wide, and touching ones {} +- {} px apart: glare, exposure or their "
+          "grey "
+          "level moves the rims; the distance is taken for the bead diameter",
+          value_text(width), error_text(width.error), value_text(apart), error_text(apart.error)));
   }
 
   /// Scale and the diameter of a bead in mm.
@@ -132,6 +136,11 @@ class Draft {
       measured("camera.pixels_per_sigma", *scale_, how_scale_);
     else
       open("camera.pixels_per_sigma", "bead diameter in px", "");
+    if (scale_ && disc_width_)
+      measured(
+          "camera.disc_width_px", *disc_width_,
+          "width of the discs, whose rims glare, exposure or their grey level moves; radii are measured in "
+          "it");
     origin();
     phases();
     if (const auto& g = s_.geometry) {
@@ -361,7 +370,7 @@ class Draft {
   const CellSurvey& s_;
   const CellAnswers& a_;
   CellDraft out_;
-  std::optional<calibration::Estimate> scale_, sigma_mm_;
+  std::optional<calibration::Estimate> scale_, disc_width_, sigma_mm_;
   std::string how_scale_, how_sigma_;
   bool needs_sigma_ = false;
 };

@@ -86,8 +86,8 @@ std::optional<imaging::LocatorOptions> survey_beads(CellSurvey& s, const SurveyO
     return std::nullopt;
   }
   s.bright = found.preprocess.bright;
-  s.diameter_px = found.diameter_px;
   s.diameter_stated = options.diameter_px > 0;
+  s.diameter_px = s.diameter_stated ? options.diameter_px : found.diameter_px;
   s.refine = found.refine.method;
   s.other_diameters_px = found.other_diameters_px;
   try {

@@ -22,7 +22,7 @@ bool checks_drive(const FilmedCell& filmed, const FilmOptions& options) {
 
 imaging::LocatorOptions locator_of(const imaging::CellDescription& cell, const FilmOptions& options) {
   return imaging::locator_of(
-      options.locating, cell.pixels_per_sigma,
+      options.locating, cell.disc_px(),
       options.request.cell_file.empty() ? std::nullopt : std::optional<bool>(cell.bright), cell.refine);
 }
 
@@ -62,10 +62,12 @@ FilmedCell check_beads(FilmedCell filmed, const OpenFrames& open, const std::fil
   const imaging::Region region = imaging::region_of(options.locating);
   imaging::RegionFrames seen(*frames, region);
   imaging::FramesAhead ahead(seen);
-  const imaging::OpenAtScale left_open{.polarity = !options.locating.dark && !locator.preprocess.bright,
-                                       .refiner = !options.locating.refine_given && !filmed.cell.refine};
-  if (const auto refiner =
-          check_beads_at_scale(ahead, locator, left_open, options.request.cell_file, options.threads)) {
+  const imaging::StatedDiscs stated{
+      .file = options.request.cell_file,
+      .key = filmed.cell.disc_width_px ? "camera.disc_width_px" : "camera.pixels_per_sigma",
+      .polarity_open = !options.locating.dark && !locator.preprocess.bright,
+      .refiner_open = !options.locating.refine_given && !filmed.cell.refine};
+  if (const auto refiner = check_beads_at_scale(ahead, locator, stated, options.threads)) {
     filmed.cell.refine = refiner;
     filmed.found_refiner = fmt::format(
         "the method \"{}\" finds few beads of the stated scale, so that \"{}\" locates them: state "

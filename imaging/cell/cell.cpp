@@ -50,6 +50,18 @@ std::optional<Boundary> sides_in(const ConfigSection& box) {
       ->value;
 }
 
+/// Discs as wide as two beads, or half as wide, are no discs of beads of one sigma.
+void refuse_far_disc_width(const CellDescription& cell, const ConfigSection& camera) {
+  constexpr double kFar = 2;
+  if (!cell.disc_width_px || !cell.pixels_per_sigma) return;
+  const double ratio = *cell.disc_width_px / *cell.pixels_per_sigma;
+  if (ratio > kFar || ratio < 1 / kFar)
+    throw ConfigError(
+        camera.where("disc_width_px"),
+        fmt::format("is {:g}, but must be between half and twice camera.pixels_per_sigma ({:g}).",
+                    *cell.disc_width_px, *cell.pixels_per_sigma));
+}
+
 }  // namespace
 
 CellDescription read_cell(const std::filesystem::path& path, const std::vector<std::string>& assignments) {
@@ -69,6 +81,8 @@ CellDescription read_cell(const std::filesystem::path& path, const std::vector<s
 
   const ConfigSection camera = root.section("camera");
   cell.pixels_per_sigma = camera.number_in("pixels_per_sigma", 1, 1e4);
+  cell.disc_width_px = camera.number_in("disc_width_px", 1, 1e4);
+  refuse_far_disc_width(cell, camera);
   constexpr double kFarthest_px = 1e6;
   if (const auto origin = numbers_in(camera, "origin_px", 2, -kFarthest_px, kFarthest_px))
     cell.origin = PixelPoint{(*origin)[0], (*origin)[1]};

@@ -4,7 +4,8 @@
 ///
 ///     [camera]
 ///     pixels_per_sigma = 15.0      # camera pixels per bead diameter
-///     origin_px = [40.0, 560.0]    # lower-left inside corner, plate at its mean height
+///     disc_width_px = 15.2         # width of the discs of beads of one sigma, if glare or exposure moves
+///     their rims origin_px = [40.0, 560.0]    # lower-left inside corner, plate at its mean height
 ///     frames_per_cycle = 20        # 0 or absent: not phase-locked
 ///     first_phase = 0              # phase of the first frame
 ///     phase_offset = 0.0           # delay of every frame after its nominal phase, in frames
@@ -51,6 +52,7 @@ namespace twincell::imaging {
 /// Description of a cell. Absent values are unknown.
 struct CellDescription {
   std::optional<double> pixels_per_sigma;  ///< > 0
+  std::optional<double> disc_width_px;     ///< of beads of one sigma; absent: pixels_per_sigma
   std::optional<PixelPoint> origin;        ///< px
   double rotation_deg = 0;                 ///< of the picture, counter-clockwise
   double distortion = 0;                   ///< k1 (geometry/lens.hpp)
@@ -67,6 +69,10 @@ struct CellDescription {
   Included included;                ///< values taken from a calibration
   std::string text;                 ///< the resolved configuration as TOML, for provenance
 
+  /// Width in the picture of a bead of one sigma, if it is stated.
+  [[nodiscard]] std::optional<double> disc_px() const {
+    return disc_width_px ? disc_width_px : pixels_per_sigma;
+  }
   /// Map between a picture of this size and the cell.
   /// \pre origin and pixels_per_sigma are known
   [[nodiscard]] PixelFrame pixel_frame(cv::Size picture) const {

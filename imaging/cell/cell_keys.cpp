@@ -10,6 +10,9 @@ std::vector<KeyRow> rows() {
   const std::vector<std::string> laboratory = {"scale.sigma_mm=2.0", "scale.gravity_m_s2=9.81"};
   return {
       {"camera.pixels_per_sigma", "px", "located bead diameter", "15.0", "camera pixels per bead diameter"},
+      {"camera.disc_width_px", "px", "that of pixels_per_sigma", "15.2",
+       "width in the picture of a bead of one sigma, where glare, exposure or a grey level of its own moves "
+       "its rim; radii are measured in it"},
       {"camera.origin_px", "px", "required by match", "[40.0, 560.0]",
        "lower left inside corner of the cell with the plate at its mean height, column and row; in the "
        "picture without rotation and distortion"},

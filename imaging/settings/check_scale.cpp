@@ -47,8 +47,7 @@ std::string sizes_that_differ(const LocatorOptions& beads, double pixels_per_sig
 }
 
 std::optional<std::string> check_beads_at_scale(FramesAhead& frames, const LocatorOptions& given,
-                                                const OpenAtScale& open, const std::string& cell_file,
-                                                int threads) {
+                                                const StatedDiscs& cell, int threads) {
   constexpr double kNoLess = 0.95, kMore = 1.2;  // of the area that the stated discs cover
   const double scale = given.diameter_px;
   const cv::Mat* const first = frames.look(0);
@@ -57,7 +56,7 @@ std::optional<std::string> check_beads_at_scale(FramesAhead& frames, const Locat
   if (of_size(stated, scale)) return {};
   LocatorOptions searched = given;
   searched.diameter_px = 0;
-  searched.polarity_known = !open.polarity;
+  searched.polarity_known = !cell.polarity_open;
   LocatorOptions found;
   try {
     found = configure_locator(frames, searched, threads).locator;
@@ -69,17 +68,17 @@ std::optional<std::string> check_beads_at_scale(FramesAhead& frames, const Locat
     // A wrong size found inside large beads covers less than they do.
     if (share < kNoLess) return {};
     throw ConfigError(
-        {.file = cell_file, .key = "camera.pixels_per_sigma"},
+        {.file = cell.file, .key = cell.key},
         fmt::format("is {:g}, but the beads in the frames are {} px wide, and sigma is the bead diameter; "
                     "correct the scale, or state the diameter of the beads (--diameter).",
                     scale, sizes));
   }
   if (share < kMore) return {};
   if (found.preprocess.bright && !given.preprocess.bright)
-    throw ConfigError({.file = cell_file, .key = "camera.bright"},
+    throw ConfigError({.file = cell.file, .key = "camera.bright"},
                       "is absent or false, but the beads in the frames are brighter than their surroundings; "
                       "state camera.bright = true (or --dark if they are not).");
-  if (!open.refiner || found.refine.method == given.refine.method) return {};
+  if (!cell.refiner_open || found.refine.method == given.refine.method) return {};
   return found.refine.method;
 }
 

@@ -19,7 +19,8 @@ std::vector<char> beneath_plate(const LinkedDetections& linked, const CellDescri
     for (const TrackedBead& b : linked.frames[f]) {
       const auto t = static_cast<std::size_t>(b.track);
       ++seen[t];
-      const double radius = linked.tracks[t].radius_px / pixel_frame.pixels_per_sigma;
+      const double radius =
+          linked.tracks[t].radius_px / cell.disc_width_px.value_or(pixel_frame.pixels_per_sigma);
       if (pixel_frame.cell_from_pixel({b.x_px, b.y_px}).z() < plate + kLeastHeight * radius) ++below[t];
     }
   }

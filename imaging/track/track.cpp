@@ -155,10 +155,12 @@ double smallest_diameter(const LocatorOptions& locator) {
 }  // namespace
 
 std::string TrackedStack::scale_doubt(const CellDescription& cell) const {
-  const std::string sizes = cell.pixels_per_sigma ? sizes_that_differ(locator, *cell.pixels_per_sigma) : "";
+  const std::string sizes = cell.disc_px() ? sizes_that_differ(locator, *cell.disc_px()) : "";
   if (sizes.empty()) return {};
-  return fmt::format("sigma is {:g} px (camera.pixels_per_sigma), but the beads are {} px wide: {:.3g} sigma",
-                     *cell.pixels_per_sigma, sizes, smallest_diameter(locator) / *cell.pixels_per_sigma);
+  return fmt::format(
+      "a bead of one sigma is {:g} px wide (camera.{}), but the discs are {} px wide: {:.3g} sigma",
+      *cell.disc_px(), cell.disc_width_px ? "disc_width_px" : "pixels_per_sigma", sizes,
+      smallest_diameter(locator) / *cell.disc_px());
 }
 
 std::string TrackedStack::paler_doubt() const {

@@ -35,7 +35,7 @@ TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell
       continue;
     }
     plan.slot_of_track[t] = static_cast<std::int64_t>(info.n_beads++);
-    info.radius.push_back(track.radius_px / scale);
+    info.radius.push_back(track.radius_px / cell.disc_width_px.value_or(scale));
     info.tracer.push_back(track.is_tracer() ? 1 : 0);
   }
   info.drive = cell.drive();

@@ -48,8 +48,9 @@ MemoryTrajectory known_motion() {
   return truth;
 }
 
-MemoryTrajectory track(const std::filesystem::path& folder, int threads) {
-  const CellDescription cell = read_cell(folder / "CELL.toml");
+MemoryTrajectory track(const std::filesystem::path& folder, int threads,
+                       const std::vector<std::string>& set = {}) {
+  const CellDescription cell = read_cell(folder / "CELL.toml", set);
   LocatorOptions locator;
   locator.diameter_px = cell.pixels_per_sigma.value();
   const auto frames = open_frames(folder);
@@ -61,6 +62,20 @@ MemoryTrajectory track(const std::filesystem::path& folder, int threads) {
 }
 
 }  // namespace
+
+// Glare that widens the discs by 2 % leaves the beads as wide as they are.
+TEST(ClosedLoop, RadiiAreMeasuredInTheStatedWidthOfTheDiscs) {
+  const TemporaryFolder folder;
+  render(known_motion(), {}, folder / "frames");
+  const MemoryTrajectory usual = track(folder / "frames", 1);
+  const MemoryTrajectory wide = track(folder / "frames", 1, {"camera.disc_width_px=15.3"});
+  ASSERT_EQ(usual.info().n_beads, wide.info().n_beads);
+  for (std::size_t i = 0; i < usual.info().n_beads; ++i) {
+    EXPECT_NEAR(usual.info().radius[i], 0.5, 0.01);
+    EXPECT_NEAR(wide.info().radius[i], usual.info().radius[i] * 15 / 15.3, 1e-12);
+  }
+  EXPECT_EQ(usual.frames()[5].position, wide.frames()[5].position);
+}
 
 TEST(ClosedLoop, PositionsIdentitiesAndPlateComeBack) {
   const TemporaryFolder folder;

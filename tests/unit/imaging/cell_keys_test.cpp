@@ -3,6 +3,7 @@
 
 #include "imaging/camera/camera_keys.hpp"
 #include "imaging/cell/cell.hpp"
+#include "tests/support/complaint.hpp"
 #include "tests/support/key_table_checks.hpp"
 
 namespace twincell::imaging {
@@ -35,6 +36,18 @@ TEST(CellKeys, StatedDefaultsChangeNothing) {
                        c.refine.value_or("exact"), static_cast<int>(c.sides), tilt[0], tilt[1]);
   };
   EXPECT_GE(expect_defaults_change_nothing(cell_keys(), told), 8);
+}
+
+TEST(CellKeys, DiscsAreAboutAsWideAsTheirBeads) {
+  const auto width = [](const char* px) {
+    return read_cell("", {"camera.pixels_per_sigma=15.0", std::string("camera.disc_width_px=") + px})
+        .disc_px();
+  };
+  EXPECT_EQ(read_cell("", {"camera.pixels_per_sigma=15.0"}).disc_px(), 15);
+  EXPECT_EQ(width("15.2"), 15.2);
+  for (const char* far : {"7.4", "30.1"})
+    expect_refusal<ConfigError>([&] { (void)width(far); }, "camera.disc_width_px",
+                                "between half and twice camera.pixels_per_sigma (15)");
 }
 
 TEST(CellKeys, TheDriveHasItsHarmonics) {

@@ -91,6 +91,8 @@ TEST(CellDraft, TheScaleOfShadedBeadsIsTheDistanceOfTouchingOnes) {
   s.beads->spacing = calibration::Estimate{12.8, 0.01};
   const CellDraft wide = draft_cell(s, {});
   EXPECT_EQ(key(wide, "camera.pixels_per_sigma").value, "12.800");
+  EXPECT_EQ(key(wide, "camera.disc_width_px").value, "12.0000");
+  EXPECT_EQ(draft_cell(survey(), {}).find("camera.disc_width_px"), nullptr);
   ASSERT_EQ(wide.notes.size(), 1U);
   EXPECT_NE(wide.notes[0].find("discs are 12.0000 +- 0.006 px wide, and touching ones 12.800"),
             std::string::npos)
