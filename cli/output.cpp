@@ -91,6 +91,12 @@ void guard_outputs(const CLI::App& verb, Common& common) {
     return std::any_of(common.outputs.begin(), common.outputs.end(),
                        [&](const Output& o) { return o.option == option; });
   };
+  // As of an unset variable of a shell, which must not count as an option that was left out.
+  for (const CLI::Option* option : verb.get_options())
+    for (const std::string& word : option->results())
+      if (word.empty())
+        throw ConfigError({.file = {}, .key = option->get_name()},
+                          "is empty; give a value, or leave it out.");
   for (const CLI::Option* option : verb.get_options()) {
     if (is_output(option) || option->get_type_name() == kWord) continue;
     for (const std::string& word : option->results()) {

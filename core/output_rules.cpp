@@ -14,6 +14,7 @@
 #include "core/error.hpp"
 #include "core/manifest.hpp"
 #include "core/picture_names.hpp"
+#include "core/sha256.hpp"
 
 namespace twincell {
 
@@ -155,6 +156,16 @@ void require_file(const fs::path& final, const Product& product, const Where& wh
   if (!is_forced()) require_unprotected(final, product, where);
 }
 
+void require_unchanged(const fs::path& folder, const Manifest& manifest, const Where& where) {
+  std::error_code ec;
+  for (const auto& [name, hashes] : manifest.files)
+    if (fs::exists(fs::symlink_status(folder / name, ec)) && !manifest.unchanged(folder, name))
+      throw ConfigError(where,
+                        fmt::format("'{}' in it has changed since twincell wrote it; move it, or name a new "
+                                    "folder.",
+                                    name));
+}
+
 void require_folder(const fs::path& final, const Product& product, const Where& where) {
   std::error_code ec;
   if (!fs::exists(final, ec)) return;
@@ -182,13 +193,7 @@ void require_folder(const fs::path& final, const Product& product, const Where& 
   if (manifest->product != product.name)
     throw ConfigError(where, fmt::format("the folder is {}, and the output is {}; name a new folder.",
                                          manifest->product, product.name));
-  if (product.shared) return;
-  for (const auto& [name, hashes] : manifest->files)
-    if (fs::exists(fs::symlink_status(final / name, ec)) && !manifest->unchanged(final, name))
-      throw ConfigError(where,
-                        fmt::format("'{}' in it has changed since twincell wrote it; move it, or name a new "
-                                    "folder.",
-                                    name));
+  if (!product.shared) require_unchanged(final, *manifest, where);
 }
 
 }  // namespace
@@ -253,6 +258,21 @@ fs::path claim_shared_folder(const fs::path& path, const Product& product) {
     throw ConfigError({path.string(), 0, 0, ""}, "the folder cannot be made (" + ec.message() + ").");
   if (!Manifest::read(final)) Manifest{.product = product.name, .files = {}}.write(final);
   return final;
+}
+
+void unlist_files(const fs::path& folder) {
+  auto manifest = Manifest::read(folder);
+  if (!manifest || manifest->files.empty()) return;
+  require_unchanged(folder, *manifest, {folder.string(), 0, 0, ""});
+  manifest->files.clear();
+  manifest->write(folder);
+}
+
+void list_files(const fs::path& folder, const std::vector<std::string>& names) {
+  auto manifest = Manifest::read(folder);
+  if (!manifest) return;
+  for (const std::string& name : names) manifest->files[name] = {sha256_of(folder / name)};
+  manifest->write(folder);
 }
 
 }  // namespace twincell

@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/output_kind.hpp"
 
@@ -41,5 +42,14 @@ bool may_replace(const std::filesystem::path& file, const Product& product);
 /// \returns as require_output
 /// \throws ConfigError as require_output, or if the folder cannot be created
 std::filesystem::path claim_shared_folder(const std::filesystem::path& path, const Product& product);
+
+/// Takes all files off the list of a shared folder, so that this run may replace them. A run that is killed
+/// leaves files without a hash, which the next one judges by their kind.
+/// \throws ConfigError naming a listed file that has changed since it was written
+void unlist_files(const std::filesystem::path& folder);
+
+/// Lists finished files of a shared folder with their hashes.
+/// \param names in the folder
+void list_files(const std::filesystem::path& folder, const std::vector<std::string>& names);
 
 }  // namespace twincell

@@ -297,7 +297,7 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
   of_film.folder = folder;
   const auto open = [&](const imaging::LocatorOptions& locator) {
     auto frames = options.open(locator);
-    claim_shared_folder(folder, twin_folder());  // for a stack that can be opened
+    unlist_files(claim_shared_folder(folder, twin_folder()));  // for a stack that can be opened
     return frames;
   };
   calibration::TrackedFilm film =
@@ -320,6 +320,9 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
   const std::string scene = kSceneHead + checksum_line(below) + below;
   write_text_file(twin.scene, scene, Product::text("a scene", kSceneHead));
   simulate_twins(scene, twin, options, folder, provenance, progress);
+  std::vector<std::string> written = {twin.experiment.filename().string()};
+  for (const fs::path& simulation : twin.simulations) written.push_back(simulation.filename().string());
+  list_files(folder, written);
   return twin;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -27,6 +28,45 @@ PhaseMethod phase_method(const std::string& option) {
       Where{.file = {}, .key = "--phase-lock"},
       "'" + option +
           "' is neither a number of frames per cycle, 'found', 'none', nor a list of triggers (*.csv).");
+}
+
+/// \throws ConfigError if an option and an assignment state different values of one key
+void refuse_other_value(const std::vector<std::string>& assignments, const std::string& key,
+                        const char* option, std::optional<double> value) {
+  if (!value) return;
+  for (const std::string& assignment : assignments) {
+    if (assigned_key(assignment) != key) continue;
+    const std::string text = assignment.substr(assignment.find('=') + 1);
+    double assigned = 0;
+    const std::size_t from = std::min(text.find_first_not_of(" \t"), text.size());
+    const auto [last, error] = std::from_chars(text.data() + from, text.data() + text.size(), assigned);
+    if (error != std::errc() || assigned != *value)
+      throw ConfigError({.file = {}, .key = option},
+                        fmt::format("is {:g}, and --set {} states the same; give only one of the two.",
+                                    *value, assignment));
+  }
+}
+
+/// \throws ConfigError if options state phases that the chosen source does not use
+void refuse_unused_phases(const TrackRequest& o) {
+  const PhaseMethod method = phase_method(o.phase.phase_lock);
+  if (method == PhaseMethod::fixed) {
+    if (o.frames_per_cycle && !o.phase.phase_lock.empty() &&
+        std::stoi(o.phase.phase_lock) != *o.frames_per_cycle)
+      throw ConfigError({.file = {}, .key = "--frames-per-cycle"},
+                        fmt::format("is {}, but --phase-lock is {}; give only one of the two.",
+                                    *o.frames_per_cycle, o.phase.phase_lock));
+    return;
+  }
+  if (o.first_phase)
+    throw ConfigError({.file = {}, .key = "--first-phase"},
+                      fmt::format("is {}, but --phase-lock {} does not use it; leave one of the two out.",
+                                  *o.first_phase, o.phase.phase_lock));
+  if (method == PhaseMethod::none && o.frames_per_cycle.value_or(0) > 0)
+    throw ConfigError({.file = {}, .key = "--frames-per-cycle"},
+                      fmt::format("is {}, but --phase-lock none leaves the phases out; leave one of the two "
+                                  "out.",
+                                  *o.frames_per_cycle));
 }
 
 }  // namespace
@@ -75,6 +115,15 @@ CellDescription resolve_cell(const TrackRequest& o) {
   assign("drive.gamma", o.gamma);
   assign("drive.amplitude", o.amplitude);
   refuse_contradictory_assignments(assignments);
+  refuse_other_value(assignments, "camera.pixels_per_sigma", "--pixels-per-sigma", o.pixels_per_sigma);
+  refuse_other_value(assignments, "camera.frames_per_cycle", "--frames-per-cycle", o.frames_per_cycle);
+  refuse_other_value(assignments, "camera.first_phase", "--first-phase", o.first_phase);
+  if (o.origin)
+    for (const std::string& assignment : assignments)
+      if (assigned_key(assignment) == "camera.origin_px")
+        throw ConfigError({.file = {}, .key = "--origin-px"},
+                          fmt::format("and --set {} state the same; give only one of the two.", assignment));
+  refuse_unused_phases(o);
   CellDescription cell = read_cell(o.cell_file, assignments);
   if (o.pixels_per_sigma) cell.pixels_per_sigma = o.pixels_per_sigma;
   if (o.origin) cell.origin = PixelPoint{(*o.origin)[0], (*o.origin)[1]};

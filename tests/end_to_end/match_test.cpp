@@ -12,6 +12,7 @@
 
 #include "core/atomic_file.hpp"
 #include "sim/scene/read_scene.hpp"
+#include "tests/support/file_bytes.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/rigid_bed.hpp"
 #include "trajectory/formats/h5md_file.hpp"
@@ -204,9 +205,8 @@ TEST(Match, GivesTheTwinOfAFilmedCell) {
   EXPECT_EQ(shifted_beads, 100) << "the second twin begins a little elsewhere";
   EXPECT_LT(far_away, 5) << "but only beads that nothing holds settle far away";
 
-  // The scene runs on its own and reproduces the first twin bit for bit.
-  const Ran again = run_program({"simulate", folder / "twin/scene.toml", "--set", "time.steps_per_contact=20",
-                                 "-q", "-o", folder / "again.h5"});
+  // The scene contains what --set changed, runs on its own and reproduces the first twin bit for bit.
+  const Ran again = run_program({"simulate", folder / "twin/scene.toml", "-q", "-o", folder / "again.h5"});
   ASSERT_EQ(again.code, 0) << again.err;
   const H5mdReader repeated(folder / "again.h5");
   Frame last_of_one, last_of_again;
@@ -214,6 +214,21 @@ TEST(Match, GivesTheTwinOfAFilmedCell) {
   repeated.read(repeated.n_frames() - 1, last_of_again);
   for (std::size_t i = 0; i < last_of_one.position.size(); ++i)
     EXPECT_EQ(last_of_one.position[i], last_of_again.position[i]) << i;
+
+  // A trajectory that somebody put in the place of a twin stays; the untouched match is replaced.
+  fs::rename(folder / "twin/simulation-2.h5", folder / "mine.h5");
+  fs::copy_file(folder / "again.h5", folder / "twin/simulation-2.h5");
+  const std::vector<std::string> match_again = {
+      "match",     stack,   kStack / "CELL.toml",        "-o",    folder / "twin", "--twins", "2",
+      "--no-film", "--set", "time.steps_per_contact=20", "--set", "time.cycles=2", "-q",      "--json"};
+  const Ran refused = run_program(match_again);
+  EXPECT_EQ(refused.code, 2) << refused.err;
+  EXPECT_NE(refused.err.find("'simulation-2.h5' in it has changed"), std::string::npos) << refused.err;
+  EXPECT_EQ(bytes_of(folder / "twin/simulation-2.h5"), bytes_of(folder / "again.h5"));
+  fs::rename(folder / "mine.h5", folder / "twin/simulation-2.h5");
+  const Ran replaced = run_program(match_again);
+  ASSERT_EQ(replaced.code, 0) << replaced.err;
+  EXPECT_EQ(nlohmann::json::parse(replaced.out)["cycles"], 2) << "of --set, not of the film";
 }
 
 // The shipped stack was rendered with A = 0.9 sigma (SOURCE.md), 20 frames a cycle, the first at phase 0.

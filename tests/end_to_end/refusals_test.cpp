@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 constexpr int kUsage = 2, kInput = 3;
 
 struct Refusal {
-  std::string command;  ///< words, separated by blanks; FOLDER/ is put before words with the prefix "@"
+  /// Words, separated by blanks; FOLDER/ is put before words with the prefix "@", and '' is an empty one.
+  std::string command;
   int code;
   std::vector<std::string> said;
 };
@@ -113,7 +114,8 @@ class Refusals : public ::testing::Test {
       SCOPED_TRACE(r.command);
       std::vector<std::string> words;
       std::istringstream in(r.command);
-      for (std::string word; in >> word;) words.push_back(word.front() == '@' ? at(word.substr(1)) : word);
+      for (std::string word; in >> word;)
+        words.push_back(word == "''" ? "" : word.front() == '@' ? at(word.substr(1)) : word);
       words.emplace_back("-q");
       const Ran ran = run_program(words);
       EXPECT_EQ(ran.code, r.code) << ran.err << ran.out;
@@ -163,6 +165,30 @@ TEST_F(Refusals, Fit) {
            kInput,
            {"twice.csv:2", "x: the column occurs twice, with the values '1' and '2'"}},
           {"fit @nan.csv --law line", kInput, {"nan.csv", "y", "no number"}}});
+}
+
+// As of an unset variable of a shell: before, such an option counted as left out.
+TEST_F(Refusals, EmptyValues) {
+  expect({{"track @mixed -o @n.h5 --mask ''", kUsage, {"--mask", "is empty"}},
+          {"track @mixed -o @n.h5 --frames ''", kUsage, {"--frames", "is empty"}},
+          {"fit @g.csv --law line --sigma ''", kUsage, {"--sigma", "is empty"}},
+          {"render @t.h5 -o @n --camera ''", kUsage, {"--camera", "is empty"}},
+          {"compare --simulation '' -o @n", kUsage, {"--simulation", "is empty"}}});
+}
+
+// Before, one of the two was dropped.
+TEST_F(Refusals, TwoOptionsThatSayDifferentThings) {
+  const std::string track = "track @mixed -o @n.h5 ";
+  expect({{track + "--frames-per-cycle 10 --phase-lock 20", kUsage, {"--frames-per-cycle", "10", "20"}},
+          {track + "--first-phase 7 --phase-lock found", kUsage, {"--first-phase", "found"}},
+          {track + "--frames-per-cycle 20 --phase-lock none", kUsage, {"--frames-per-cycle", "none"}},
+          {track + "--set camera.frames_per_cycle=10 --frames-per-cycle 20",
+           kUsage,
+           {"--frames-per-cycle", "is 20", "camera.frames_per_cycle=10"}},
+          {track + "--set camera.pixels_per_sigma=11 --pixels-per-sigma 12",
+           kUsage,
+           {"--pixels-per-sigma", "is 12", "camera.pixels_per_sigma=11"}},
+          {track + "--set camera.origin_px=[1,2] --origin-px 1 3", kUsage, {"--origin-px", "[1,2]"}}});
 }
 
 TEST_F(Refusals, Bounce) {
