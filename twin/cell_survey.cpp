@@ -163,6 +163,11 @@ void survey_plate(CellSurvey& s, const SurveyOptions& options, const std::vector
   s.drive->amplitude_error =
       std::hypot(s.drive->amplitude_error, s.drive->amplitude * s.geometry->stretch_error);
   s.notes.insert(s.notes.end(), s.drive->notes.begin(), s.drive->notes.end());
+  if (s.drive->dropped > 0)
+    s.notes.push_back(
+        fmt::format("by the plate, {} missing between the first and the last one; track and "
+                    "match find them too",
+                    s.drive->dropped == 1 ? "1 frame is" : fmt::format("{} frames are", s.drive->dropped)));
   if (s.drive->frames_per_cycle == 0)
     s.missing.push_back(
         {kFramesPerCycle,

@@ -362,22 +362,22 @@ Timed first_attempt(const std::vector<double>& heights, int frames_per_cycle) {
   return out;
 }
 
-/// Whether frames are lost or doubled in nearly every cycle, at the same phase or more than one of them: a
-/// cycle of another length then passes for the real one, as where the plate is not seen at its lowest.
+/// Whether frames are lost or doubled in nearly every cycle, at the same phase or in more than one place: a
+/// cycle of another length then passes for the real one, as where the plate is not seen at its lowest. One
+/// gap is one place, however long.
 bool slips_in_each_cycle(const imaging::SineSlips& slips, int frames_per_cycle) {
-  constexpr double kMinPerCycle = 0.7, kSeveralPerCycle = 1.5;  // lost and doubled frames per cycle
-  constexpr double kMinCoherence = 0.95;  // length of the mean of exp(i phase) over the slips
-  const double cycles = static_cast<double>(slips.ticks.back() - slips.ticks.front()) / frames_per_cycle;
-  const double each = static_cast<double>(slips.dropped + slips.doubled) / cycles;
-  if (each < kMinPerCycle || each >= kSeveralPerCycle) return each >= kSeveralPerCycle;
+  constexpr double kMinPerCycle = 0.7, kSeveralPerCycle = 1.5;  // places per cycle
+  constexpr double kMinCoherence = 0.95;  // length of the mean of exp(i phase) over the places
   std::complex<double> sum = 0;
-  double events = 0;
+  double places = 0;
   for (std::size_t i = 1; i < slips.ticks.size(); ++i)
     if (slips.ticks[i] - slips.ticks[i - 1] != 1) {
       sum += std::polar(1.0, 2 * kPi * static_cast<double>(slips.ticks[i]) / frames_per_cycle);
-      ++events;
+      ++places;
     }
-  return std::abs(sum) > kMinCoherence * events;
+  const double cycles = static_cast<double>(slips.ticks.back() - slips.ticks.front()) / frames_per_cycle;
+  if (places < kMinPerCycle * cycles) return false;
+  return places >= kSeveralPerCycle * cycles || std::abs(sum) > kMinCoherence * places;
 }
 
 /// Repairs dropped and doubled frames: for each number of frames per cycle, finds the best path of phases and

@@ -167,6 +167,20 @@ TEST(DriveFit, DroppedAndDoubledFramesAreFoundAndMended) {
   EXPECT_EQ(l.frames[100].tick - l.frames[99].tick, 2);
 }
 
+// A long gap in a short stack is one place, not a slip in each cycle (before: a period of 18.7 frames).
+TEST(DriveFit, OneLongGapIsFound) {
+  for (const std::size_t missing : {std::size_t{7}, std::size_t{13}}) {
+    std::mt19937_64 generator(5);
+    std::vector<double> h = heights_of({.frames = 160}, generator);
+    h.erase(h.begin() + 80, h.begin() + 80 + static_cast<std::ptrdiff_t>(missing));
+    const DriveFit l = fit_drive(h);
+    EXPECT_EQ(l.dropped, static_cast<std::int64_t>(missing));
+    EXPECT_EQ(l.frames_per_cycle, 20) << missing;
+    EXPECT_NEAR(l.amplitude, 12, 5 * l.amplitude_error) << missing;
+    EXPECT_EQ(l.frames[80].tick - l.frames[79].tick, 1 + static_cast<double>(missing));
+  }
+}
+
 TEST(DriveFit, FramesOutOfLockAreFlagged) {
   std::mt19937_64 generator(6);
   std::vector<double> h = heights_of({}, generator);
