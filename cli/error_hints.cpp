@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <fstream>
+#include <optional>
 #include <string_view>
 
 #include "core/escape.hpp"
@@ -82,13 +84,58 @@ std::string advice_on_kind(const std::string& verb, const std::string& word) {
   return {};
 }
 
+/// What a TOML file is, judged by its tables, and the verb that reads it.
+struct TomlKind {
+  std::string_view name, reader;
+};
+constexpr TomlKind kPlan{"a plan of a sweep", "sweep run"}, kCell{"a cell file", "track and match"},
+    kScene{"a scene", "simulate"};
+
+std::optional<TomlKind> kind_of_toml(const fs::path& file) {
+  constexpr std::uintmax_t kLargest = std::uintmax_t{1} << 20;  // bytes
+  std::error_code error;
+  if (!fs::is_regular_file(file, error) || fs::file_size(file, error) > kLargest) return std::nullopt;
+  std::ifstream stream(file);
+  std::optional<TomlKind> kind;
+  for (std::string line; std::getline(stream, line);) {
+    const auto begins = [&](std::string_view word) { return line.starts_with(word); };
+    if (begins("[axes") || begins("results")) return kPlan;
+    if (begins("[camera")) return kCell;
+    if (begins("preset") || begins("[beads") || begins("[contact") || begins("[start") || begins("[time"))
+      kind = kScene;
+  }
+  return kind;
+}
+
+/// A TOML file of another kind than the verb reads has keys that it does not know, or lacks those it needs.
+std::string advice_on_toml(const std::string& verb, const std::string& word, const std::string& complaint) {
+  constexpr std::array<std::string_view, 3> kOfKeys = {"there is no such key", "is missing",
+                                                       "is a key of a scene"};
+  if (fs::path(word).extension() != ".toml" ||
+      std::none_of(kOfKeys.begin(), kOfKeys.end(),
+                   [&](std::string_view said) { return complaint.find(said) != std::string::npos; }))
+    return {};
+  const auto kind = kind_of_toml(word);
+  if (!kind) return {};
+  const std::string_view reads = is_one_of(verb, kReadScenes)  ? kScene.name
+                                 : is_one_of(verb, kReadCells) ? kCell.name
+                                 : verb == "sweep"             ? kPlan.name
+                                                               : kind->name;
+  if (reads == kind->name) return {};
+  return fmt::format("this file looks like {}, which twincell {} read{}{}", kind->name, kind->reader,
+                     kind->name == kCell.name ? "" : "s",
+                     verb == "match" && kind->name == kScene.name ? "; match takes one with --scene" : "");
+}
+
 }  // namespace
 
 std::string file_hint(const std::vector<std::string>& words, const std::string& complaint) {
   if (words.empty()) return {};
   for (std::size_t i = 1; i < words.size(); ++i) {
     const std::string& word = words[i];
-    if (word.empty() || word.starts_with('-') || !complaint.starts_with(word + ": ")) continue;
+    if (word.empty() || word.starts_with('-') || !complaint.starts_with(word + ":")) continue;
+    if (std::string advice = advice_on_toml(words[0], word, complaint); !advice.empty()) return advice;
+    if (!complaint.starts_with(word + ": ")) continue;
     // Complaints about an output say themselves what to name instead.
     for (const char* of_output : {": the output", ": the file exists and", ": the folder is "})
       if (complaint.starts_with(word + of_output)) return {};

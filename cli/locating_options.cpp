@@ -81,6 +81,38 @@ std::string command_words_of_discs(const imaging::LocatingRequest& request) {
   return words_of(request, true);
 }
 
+namespace {
+
+/// A stack whose complaint about a damaged frame says how to read the frames before it.
+class UpToDamage : public imaging::FrameSource {
+ public:
+  UpToDamage(std::unique_ptr<imaging::FrameSource> frames, const imaging::FrameRange& range)
+      : frames_(std::move(frames)), range_(range) {}
+  bool next(cv::Mat& frame) override {
+    try {
+      if (!frames_->next(frame)) return false;
+    } catch (const InputError& e) {
+      if (read_ == 0) throw;
+      throw InputError({},
+                       fmt::format("{}; --frames {}:{} reads those before it.", without_full_stop(e.what()),
+                                   range_.first, range_.number(read_ - 1) + 1));
+    }
+    ++read_;
+    return true;
+  }
+  [[nodiscard]] std::size_t announced() const override { return frames_->announced(); }
+  [[nodiscard]] std::string current() const override { return frames_->current(); }
+  [[nodiscard]] imaging::StackInfo info() const override { return frames_->info(); }
+  [[nodiscard]] std::optional<double> time_s() const override { return frames_->time_s(); }
+
+ private:
+  std::unique_ptr<imaging::FrameSource> frames_;
+  imaging::FrameRange range_;
+  std::int64_t read_ = 0;
+};
+
+}  // namespace
+
 std::unique_ptr<imaging::FrameSource> open_for_locating(const std::string& stack,
                                                         const imaging::LocatingRequest& request,
                                                         const imaging::LocatorOptions& locator,
@@ -89,7 +121,8 @@ std::unique_ptr<imaging::FrameSource> open_for_locating(const std::string& stack
   const imaging::FrameRange range = imaging::frames_of(request);
   if (const auto n = static_cast<std::int64_t>(frames->announced()); n > 0 && range.end > n)
     note(common, fmt::format("--frames ends before frame {}, but {} has {} frames.", range.end, stack, n));
-  return imaging::prepare_frames(std::move(frames), stack, request, locator);
+  return std::make_unique<UpToDamage>(imaging::prepare_frames(std::move(frames), stack, request, locator),
+                                      range);
 }
 
 }  // namespace twincell::cli

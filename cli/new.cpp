@@ -118,6 +118,7 @@ nlohmann::json json_of(const twin::CellSurvey& s, const twin::CellDraft& draft) 
   }
   for (const twin::NotMeasured& m : s.missing)
     d["not_measured"].push_back({{"what", m.what}, {"why", m.why}, {"remedy", m.remedy}});
+  if (!s.unreadable.empty()) d["unreadable"] = s.unreadable;
   if (s.aspect) d["aspect"] = {{"value", s.aspect->ratio}, {"standard_error", s.aspect->error}};
   if (s.drive && s.drive->frames_per_cycle > 0) {
     d["frames_per_cycle"] = s.drive->frames_per_cycle;
@@ -163,6 +164,13 @@ std::string stacks_in_words(const std::vector<std::string>& stacks) {
   std::string words;
   for (const std::string& stack : stacks) words += (words.empty() ? "" : " ") + shell_word(stack);
   return words;
+}
+
+/// The option that chooses the readable frames of a single stack: a later verb stops at the first unreadable
+/// one. Empty if all are readable, or for several stacks.
+std::string readable_part(const nlohmann::json& cells) {
+  if (cells.size() != 1 || !cells[0].contains("unreadable")) return {};
+  return fmt::format(" --frames 0:{}", cells[0]["frames"].get<std::size_t>());
 }
 
 /// Notes stacks that differ in what is usually the same for all: the camera, the beads and the cell.
@@ -254,7 +262,7 @@ void run(const Common& common, NewOptions& o) {
                         open == 1 ? " is" : "s are", several ? "s" : "");
   else
     said += "next: twincell match " + stacks_in_words(o.stacks) + " " + shell_word(output) +
-            (whole_periods ? "" : " --phase-lock found") + " -o twin/\n";
+            (whole_periods ? "" : " --phase-lock found") + readable_part(cells) + " -o twin/\n";
   nlohmann::json document = {{"cells", cells},
                              {"provenance", nlohmann::json::parse(common.provenance().to_json())}};
   print_result(common, document, said);

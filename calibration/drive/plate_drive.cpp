@@ -147,13 +147,21 @@ constexpr double kMaxStandardErrors = 5, kMaxRelativeDifference = 0.03, kMaxDiff
 /// and of beads that are pushed up.
 constexpr double kMaxRelativeDifferenceOfBed = 0.1;
 
+/// Whether a stated number is a usual multiple of a measured one.
+bool is_about(double stated, double multiple) {
+  constexpr double kAbout = 0.04;
+  return std::abs(stated - multiple) < kAbout * multiple;
+}
+
 /// Compares the measured amplitude in `check` with the stated one.
 void compare_amplitude(DriveCheck& check, const std::string& what, double stated, double share,
                        double scale) {
   if (std::abs(check.amplitude - stated) >
       std::max({kMaxStandardErrors * check.amplitude_error, share * stated, kMaxDifference_px / scale}))
-    check.disagreement = fmt::format("{} moves with A = {:.4g} +- {:.2g} sigma, but the cell states {:.4g}",
-                                     what, check.amplitude, check.amplitude_error, stated);
+    check.disagreement =
+        fmt::format("{} moves with A = {:.4g} +- {:.2g} sigma, but the cell states {:.4g}{}", what,
+                    check.amplitude, check.amplitude_error, stated,
+                    is_about(stated, 2 * check.amplitude) ? ", twice as much, as from peak to peak" : "");
 }
 void compare_omega(DriveCheck& check, const std::string& what, const DriveFit& seen, double stated,
                    const std::optional<double>& t0) {
@@ -162,8 +170,11 @@ void compare_omega(DriveCheck& check, const std::string& what, const DriveFit& s
                error = seen.omega_error * *check.frame_rate_hz * *t0;
   if (std::abs(omega - stated) > std::max(kMaxStandardErrors * error, kMaxRelativeDifference * stated))
     check.disagreement =
-        fmt::format("{} moves with omega = {:.4g} +- {:.2g} per t0, but the cell states {:.4g}", what, omega,
-                    error, stated);
+        fmt::format("{} moves with omega = {:.4g} +- {:.2g} per t0, but the cell states {:.4g}{}", what,
+                    omega, error, stated,
+                    is_about(stated, 2 * M_PI * omega) ? ", 2 pi times as much, as from rad/s taken for Hz"
+                    : is_about(stated, omega / (2 * M_PI)) ? ", 1/(2 pi) of it, as from Hz taken for rad/s"
+                                                           : "");
 }
 
 /// Compares the second harmonic with the stated one, or with none, as vectors of amplitude and phase.

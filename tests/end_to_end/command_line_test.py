@@ -73,6 +73,8 @@ def test_next_steps():
     frames, scene = folder / "frames", folder / "scene.toml"
     frames.mkdir(exist_ok=True)
     scene.write_text('preset = "fortini-huang-2015"\n')
+    plan = folder / "plan.toml"
+    plan.write_text('scene = "scene.toml"\nresults = ["s_b"]\n[axes]\ndrive.gamma = [1.2, 1.4]\n')
     out = folder / "out.h5"
     for words, code, sentence in (
         (("info", folder / "framse"), 3, f"{folder}/framse: does not exist; did you mean '{folder}/frames'?"),
@@ -84,6 +86,9 @@ def test_next_steps():
          f"{folder}/CELL.toml: the file does not exist; twincell new STACK -o {folder}/CELL.toml writes a cell file of this name."),
         (("analyze", scene), 3, f"; twincell simulate {scene} -o scene.h5 makes a trajectory of a scene."),
         (("analyze", frames), 3, f"; twincell track {frames} -o frames.h5 makes a trajectory of a stack of frames."),
+        (("explain", plan), 2, "this file looks like a plan of a sweep, which twincell sweep run reads."),
+        (("sweep", "run", scene), 2, "this file looks like a scene, which twincell simulate reads."),
+        (("track", frames, "--cell", scene, "-o", out), 2, "this file looks like a scene, which twincell simulate reads."),
         (("explain", frames), 3, "; explain reads a scene file (TOML); for a stack of frames see twincell new."),
         (("explain", scene, "--set", "drive.gamma=1,5"), 2,
          "a number is needed, not a string; a decimal number is written with a point: 1.5."),

@@ -101,8 +101,8 @@ std::vector<StatedDrive> stated_drives() {
           {drive(a, "frequency_hz", kHertz / 2), "states 0.5"},
           {drive(a, "frequency_per_t0", kHertz), "states 70.04"},                   // hertz, but per t0
           {drive(a, "frequency_hz", 1 / (2 * std::acos(-1.0))), "states 0.01428"},  // per t0, but hertz
-          {drive(a, "omega_rad_s", kHertz), "states 0.1592"},                       // hertz, but rad/s
-          {drive("amplitude_mm = 0.9", "frequency_hz", kHertz), "A = "}};           // sigma, but millimetres
+          {drive(a, "omega_rad_s", kHertz), "states 0.1592, 1/(2 pi) of it, as from Hz taken for rad/s"},
+          {drive("amplitude_mm = 0.9", "frequency_hz", kHertz), "A = "}};  // sigma, but millimetres
 }
 
 /// CELL.toml of a stack in laboratory units, with the frame rate and another drive.

@@ -176,6 +176,12 @@ TEST_F(Refusals, EmptyValues) {
           {"compare --simulation '' -o @n", kUsage, {"--simulation", "is empty"}}});
 }
 
+TEST_F(Refusals, ADamagedFrame) {
+  expect({{"track @mixed -o @n.h5 --diameter 10 --dark",
+           kInput,
+           {"f2.png", "--frames 0:2 reads those before it"}}});
+}
+
 // Before, one of the two was dropped.
 TEST_F(Refusals, TwoOptionsThatSayDifferentThings) {
   const std::string track = "track @mixed -o @n.h5 ";
