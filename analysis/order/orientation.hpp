@@ -17,7 +17,10 @@ double turns_of_lattice(double degrees);
 /// Orientation of the lattice with the neighbour rule of the analysis. Results:
 ///
 /// - ordered_fraction: scalar, share of the enclosed beads with psi6 > kOrdered, mean over frames
-/// - orientation: scalar, lattice_angle of the summed complex psi_6 of the ordered beads, degrees, frame mean
+/// - orientation: scalar, lattice_angle of the complex psi_6 summed over the ordered beads of all frames,
+/// degrees. Its interval is that of the component of the sum across its direction, over frames. Absent if the
+/// sum is shorter than 4 standard errors; without an error over frames, shorter than sqrt(8 n) of n ordered
+/// beads of a frame: the lattices then have no common direction
 /// - orientation_a, orientation_b: scalars, shares of the ordered beads with orientation A and B, frame mean
 /// - orientation_beads: [n_beads] lattice_angle of each bead in the last frame, degrees
 ///

@@ -11,14 +11,15 @@ namespace twincell::analysis {
 namespace {
 
 /// In definition 1 the bins were [0, w), [w, 2w), ..., so that beads in contact lay on the edge of two bins.
-constexpr int kDefinition = 2;
+/// Definition 2 divided by the density of all beads, so that N points without interaction had 1 - 1/N.
+constexpr int kDefinition = 3, kDefinitionOfBins = 2;
 constexpr NamedResult kResults[] = {
     {.name = "g_r", .definition = kDefinition},
     {.name = "g_r_low", .definition = kDefinition},
     {.name = "g_r_high", .definition = kDefinition},
-    {.name = "g_r_distance", .definition = kDefinition},
+    {.name = "g_r_distance", .definition = kDefinitionOfBins},
     {.name = "g_peak", .range = Range::not_negative, .definition = kDefinition},
-    {.name = "g_peak_distance", .definition = kDefinition}};
+    {.name = "g_peak_distance", .definition = kDefinitionOfBins}};
 constexpr auto kBins = static_cast<std::size_t>(kPairCorrelationRange / kPairCorrelationWidth + 0.5);
 const char* const kSource = "Ripley 1988, ch. 3";
 
@@ -49,8 +50,9 @@ class PairCorrelation : public Observable {
     const std::vector<Vec3> beads = present_centres(frame);
     if (beads.size() < 2) return;
     const BedWindow window = bed_window(beads, info_.box, kMargin);
-    if (window.beads == 0) return;
-    const double density = static_cast<double>(window.beads) / window.content;
+    if (window.beads < 2) return;
+    // A bead is no neighbour of its own: the density is that of the other beads.
+    const double density = static_cast<double>(window.beads - 1) / window.content;
     // The farthest edge of a bin up to which each bead is a reference bead, and the pairs in those bins.
     const Neighbours pairs = find_neighbours(frame, info_.box, kFarthest);
     std::vector<std::size_t> references(kBins, 0), found(kBins, 0);
@@ -87,8 +89,8 @@ class PairCorrelation : public Observable {
     }
     const std::string none = "no frame has a bead that is farther than a bin from the edges of the bed";
     const std::string rule =
-        "beads farther than r from the edges of the bed, density of the bed between its 0.5 and 99.5 "
-        "percentiles; up to half a period, as farther pairs have several images";
+        "beads farther than r from the edges of the bed, density of the N - 1 other beads of the bed between "
+        "its 0.5 and 99.5 percentiles; up to half a period, as farther pairs have several images";
     const auto scalar = [&](const char* name, double value, const char* unit, const std::string& convention,
                             const char* why_no_interval) {
       if (peak == kBins) return absent_result(name, none, kSource);

@@ -10,7 +10,7 @@ inline constexpr double kPairCorrelationRange = 4;     ///< sigma, centre of the
 inline constexpr double kPairCorrelationWidth = 0.05;  ///< sigma, width of a bin
 
 /// Pair correlation function g(r): mean number of beads per area (3D: volume) at distance r from a bead,
-/// divided by the mean number density of the bed.
+/// divided by the mean number density of the other beads.
 ///
 ///     g(r) = sum over frames and reference beads of n(r) / (rho V_bin),   V_bin = pi (r_2^2 - r_1^2), in 3D
 ///     4 pi/3 (r_2^3 - r_1^3)
@@ -20,8 +20,9 @@ inline constexpr double kPairCorrelationWidth = 0.05;  ///< sigma, width of a bi
 ///
 /// The bed ends at walls, at the plate and at its surface. A reference bead of a bin is therefore one that is
 /// farther than the bin's outer radius from the edges of the bed's window (bed_window.hpp) with a margin of
-/// half a bead diameter (border correction, Ripley 1988). rho is the number of beads in the window over its
-/// area (volume), in each frame. Results:
+/// half a bead diameter (border correction, Ripley 1988). rho = (N - 1)/V with the number N of beads in the
+/// window and its area (volume) V, in each frame: a bead is no neighbour of its own, so that points without
+/// interaction have g = 1 for every N. Results:
 ///
 /// - g_r: [bins] mean over frames with reference beads; NaN in bins that no frame has
 /// - g_r_low, g_r_high: [bins] ends of its 95 % interval, as a correlated series over frames

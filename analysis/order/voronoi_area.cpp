@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -11,8 +12,9 @@
 namespace twincell::analysis {
 namespace {
 
-/// Definition 1 left out cells beyond the radius also in a box that is periodic on all sides.
-constexpr int kDefinition = 2;
+/// Definition 1 left out cells beyond the radius also in a box that is periodic on all sides, definition 2
+/// those that reach farther than a quarter of the shorter period.
+constexpr int kDefinition = 3;
 constexpr NamedResult kResults[] = {
     {.name = "voronoi_area", .range = Range::not_negative, .definition = kDefinition},
     {.name = "voronoi_area_variance", .range = Range::not_negative, .definition = kDefinition},
@@ -44,23 +46,77 @@ std::size_t present_beads(const Frame& frame) {
   return n;
 }
 
+using Polygon = std::vector<std::array<double, 2>>;
+
+/// The part of a convex polygon, with corners relative to a bead, that is nearer to the bead than to a
+/// neighbour at (x, z).
+void clip(Polygon& polygon, double x, double z) {
+  const double half = 0.5 * (x * x + z * z);
+  const auto beyond = [&](const std::array<double, 2>& p) { return p[0] * x + p[1] * z - half; };
+  if (half == 0 || std::none_of(polygon.begin(), polygon.end(), [&](const auto& p) { return beyond(p) > 0; }))
+    return;
+  Polygon kept;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const auto &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+    const double over_a = beyond(a), over_b = beyond(b);
+    if (over_a <= 0) kept.push_back(a);
+    if ((over_a <= 0) == (over_b <= 0)) continue;
+    const double t = over_a / (over_a - over_b);
+    kept.push_back({a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])});
+  }
+  polygon = std::move(kept);
+}
+
+/// Area of the cell of bead i in a box that is periodic along x and z, sigma^2. The bead's own images limit
+/// the cell to one period, and a point of it is nearest to the nearest image of another bead or to one of the
+/// eight images around that one: nine images of each bead are enough, whatever the cell.
+double area_in_period(const std::vector<Vec3>& beads, std::size_t i, const Vec3& size) {
+  const double x = size.x(), z = size.z();
+  Polygon cell = {{-x / 2, -z / 2}, {x / 2, -z / 2}, {x / 2, z / 2}, {-x / 2, z / 2}};
+  for (std::size_t j = 0; j < beads.size(); ++j) {
+    if (j == i) continue;
+    const Vec3 d = beads[j] - beads[i];
+    const double near_x = std::remainder(d.x(), x), near_z = std::remainder(d.z(), z);
+    for (int p = -1; p <= 1; ++p)
+      for (int q = -1; q <= 1; ++q) clip(cell, near_x + p * x, near_z + q * z);
+  }
+  double twice = 0;
+  for (std::size_t k = 0; k < cell.size(); ++k) {
+    const auto &a = cell[k], &b = cell[(k + 1) % cell.size()];
+    twice += a[0] * b[1] - a[1] * b[0];
+  }
+  return twice / 2;
+}
+
 /// Areas of all cells of a box without edges: the radius doubles until every cell is enclosed, or the period
-/// or the number of pairs allows no more.
-/// \param[in,out] radius of `cells`, becomes the last one \param n number of beads
-std::vector<double> areas_in_period(const Frame& frame, const Box& box, const VoronoiCells& cells,
-                                    double& radius, std::size_t n) {
-  constexpr double kMostPairs = 400;  // of a bead on average, so that memory remains bounded
+/// or the number of pairs allows no more. The cells that remain are cut out of the period, one by one.
+/// \param cells those of the default radius
+/// \param[in,out] radius of `cells`, becomes the last one
+std::vector<double> areas_in_period(const Frame& frame, const Box& box, VoronoiCells cells, double& radius) {
+  constexpr double kMostPairs = 400;      // of a bead on average, so that memory remains bounded
+  constexpr double kMostBisectors = 1e9;  // of a frame, some seconds
   const Vec3 size = box.size();
+  std::vector<Vec3> beads;
+  std::vector<std::size_t> slots;
+  for (std::size_t i = 0; i < frame.position.size(); ++i)
+    if (frame.present(i) && frame.position[i].allFinite()) {
+      beads.push_back(frame.position[i]);
+      slots.push_back(i);
+    }
+  const auto n = static_cast<double>(std::max<std::size_t>(beads.size(), 1));
   // voronoi_cells needs a period above four radii.
   const double widest = 0.2499 * std::min(size.x(), size.z()),
-               densest = std::sqrt(kMostPairs * size.x() * size.z() /
-                                   (4 * std::numbers::pi * static_cast<double>(std::max<std::size_t>(n, 1))));
+               densest = std::sqrt(kMostPairs * size.x() * size.z() / (4 * std::numbers::pi * n));
   const double limit = std::min(widest, densest);
   std::vector<double> areas = enclosed_areas(cells);
-  while (areas.size() < n && radius < limit) {
+  while (areas.size() < beads.size() && radius < limit) {
     radius = std::min(2 * radius, limit);
-    areas = enclosed_areas(voronoi_cells(frame, box, radius));
+    cells = voronoi_cells(frame, box, radius);
+    areas = enclosed_areas(cells);
   }
+  if (9 * n * static_cast<double>(beads.size() - areas.size()) > kMostBisectors) return areas;
+  for (std::size_t k = 0; k < beads.size(); ++k)
+    if (cells.enclosed[slots[k]] == 0) areas.push_back(area_in_period(beads, k, size));
   return areas;
 }
 
@@ -77,7 +133,7 @@ class VoronoiArea : public Observable {
     const std::size_t present = present_beads(view.frame());
     double radius = radius_;
     const std::vector<double> areas = has_no_edge()
-                                          ? areas_in_period(view.frame(), box_, view.cells(), radius, present)
+                                          ? areas_in_period(view.frame(), box_, view.cells(), radius)
                                           : enclosed_areas(view.cells());
     reach_ = std::max(reach_, radius);
     beads_ += present;

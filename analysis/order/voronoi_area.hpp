@@ -16,9 +16,9 @@ inline constexpr double kVoronoiAreaWidth = 0.05;  ///< width of a bin
 ///
 /// sqrt(3)/2 = 0.866 in a close-packed lattice of beads of diameter 1, and the area of the box over the
 /// number of beads if all cells are enclosed. In a box that is periodic along x and z the cells are as large
-/// as the beads leave them, up to a quarter of the shorter period. Elsewhere a bead at a surface has no area,
-/// and cells beyond the radius of voronoi.hpp are left out, so that a dilute gas has few, and small ones. The
-/// convention of a result states the share of the cells that were left out. Results:
+/// as the beads leave them; none is left out unless a frame needs 10^9 bisectors. Elsewhere a bead at a
+/// surface has no area, and cells beyond the radius of voronoi.hpp are left out, so that a dilute gas has
+/// few, and small ones. The convention of a result states the share of the cells that were left out. Results:
 ///
 /// - voronoi_area: mean, sigma^2; 95 % interval as a correlated series over frames
 /// - voronoi_area_variance: variance within a frame, sum (A - <A>)^2/(n - 1), mean over frames, sigma^4; same

@@ -41,6 +41,18 @@ SeriesAverage RatioAverage::linearised() const {
   return series;
 }
 
+SeriesAverage RatioAverage::combination(double f, double g) const {
+  SeriesAverage series;
+  for (const auto& [sum_a, sum_b] : coarse_)
+    series.add((f * sum_a + g * sum_b) / static_cast<double>(coarse_length_));
+  return series;
+}
+
+std::pair<double, double> RatioAverage::means() const {
+  const auto n = static_cast<double>(n_);
+  return {a_ / n, b_ / n};
+}
+
 std::optional<Interval> RatioAverage::interval(const std::string& of_what) const {
   return linearised().interval(of_what);
 }

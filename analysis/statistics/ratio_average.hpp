@@ -30,6 +30,11 @@ class RatioAverage {
   [[nodiscard]] std::optional<Interval> interval(const std::string& of_what) const;
   /// Why `interval` is absent; empty if it is present.
   [[nodiscard]] std::string why_no_interval(const std::string& of_what) const;
+  /// The series f a + g b, for example a component of a vector (a, b) in other axes. Of a long series the
+  /// means of consecutive values.
+  [[nodiscard]] SeriesAverage combination(double f, double g) const;
+  /// Means of a and of b; NaN if there are no pairs.
+  [[nodiscard]] std::pair<double, double> means() const;
 
  private:
   [[nodiscard]] SeriesAverage linearised() const;

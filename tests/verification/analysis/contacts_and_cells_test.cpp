@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <random>
+#include <tuple>
 
 #include "analysis/order/contact_number.hpp"
 #include "analysis/order/voronoi_area.hpp"
@@ -102,6 +103,25 @@ TEST(VoronoiArea, OfADiluteGasFillsThePeriodicBox) {
            values_of(t, "voronoi_area_variance")[0] / 144);
   const auto results = analysis::analyze(t, {.only = {"voronoi_area"}});
   EXPECT_EQ(analysis::find_result(results, "voronoi_area").convention, "all cells; mean over frames");
+}
+
+TEST(VoronoiArea, OfFewPointsFillsThePeriodicBox) {
+  // Some of these cells reach farther than a quarter of the shorter period, all of those of one or two beads.
+  std::mt19937_64 random(6);
+  for (const auto& [points, width, height] :
+       {std::tuple{40, 10.0, 10.0}, {7, 9.0, 3.0}, {2, 5.0, 6.0}, {1, 4.0, 4.0}}) {
+    MemoryTrajectory t = empty(2, Vec3(width, 1, height), true);
+    for (int f = 0; f < 50; ++f) {
+      std::vector<Vec3> beads;
+      for (int i = 0; i < points; ++i)
+        beads.emplace_back(std::uniform_real_distribution<double>(0, width)(random), 0,
+                           std::uniform_real_distribution<double>(0, height)(random));
+      add(t, beads);
+    }
+    validate({"V5.22", "mean area of the cells of " + std::to_string(points) + " points in a period",
+              width * height / points, 1e-9, "box over number of beads"},
+             values_of(t, "voronoi_area")[0]);
+  }
 }
 
 TEST(VoronoiArea, StatesTheCellsThatAreLeftOut) {

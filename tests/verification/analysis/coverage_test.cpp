@@ -286,6 +286,11 @@ void cover_order_grains_and_defects() {
   }
   Truth truth;
   for (const std::string& name : names) truth[name] = sums[name].first / sums[name].second;
+  // A direction is that of the sum over all states.
+  MemoryTrajectory every(info);
+  for (std::size_t k = 0; k < kStates; ++k) every.append(frame_at(static_cast<int>(k), k));
+  options.only = {"orientation"};
+  truth["orientation"] = analyze(every, options).front().value();
   const auto make = [&](int cycles, Random& chance) {
     MemoryTrajectory out(info);
     std::size_t state = chance() % kStates;

@@ -246,6 +246,52 @@ TEST(Orientation, FramesOnBothSidesOfTheSeamKeepTheirMean) {
   }
 }
 
+// Disordered points have ordered beads by chance, in directions that cancel.
+TEST(Orientation, OfPointsWithoutOrderIsAbsent) {
+  constexpr int kRuns = 40, kFrames = 40, kPoints = 60;
+  int present = 0;
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> place(0, 20);
+  for (int run = 0; run < kRuns; ++run) {
+    std::vector<Frame> frames;
+    for (int f = 0; f < kFrames; ++f) {
+      std::vector<Vec3> points;
+      for (int i = 0; i < kPoints; ++i) points.emplace_back(place(random), 0, place(random));
+      frames.push_back(frame_of(points));
+    }
+    const auto results = analyze(film(frames), {.only = {"orientation", "orientation_a"}});
+    const Result& orientation = find_result(results, "orientation");
+    EXPECT_TRUE(find_result(results, "orientation_a").present());
+    present += orientation.present() ? 1 : 0;
+    if (!orientation.present()) {
+      EXPECT_NE(orientation.absent.find("no common direction"), std::string::npos) << orientation.absent;
+    }
+    const auto one = analyze(film({frames.front()}), {.only = {"orientation"}});
+    EXPECT_FALSE(find_result(one, "orientation").present()) << "one frame";
+  }
+  EXPECT_LE(present, 1) << "0.1 % of runs are expected";
+}
+
+// The interval of a lattice whose direction scatters from frame to frame contains the direction.
+TEST(Orientation, OfScatteredLatticesHasTheIntervalOfItsDirection) {
+  constexpr int kRuns = 100;
+  int of = 0, held = 0;
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> turn(40, 6);  // across the seam at 45
+  for (int run = 0; run < kRuns; ++run) {
+    std::vector<Frame> frames;
+    for (int f = 0; f < 40; ++f) frames.push_back(frame_of(lattice(turn(random), 0, 8, 0, 8)));
+    for (Frame& frame : frames) frame.position.resize(45, Vec3::Constant(std::nan("")));
+    const Result r = find_result(analyze(film(frames), {.only = {"orientation"}}), "orientation");
+    ASSERT_TRUE(r.present() && r.interval) << r.absent << r.no_interval;
+    EXPECT_LT(r.interval->high - r.interval->low, 15);
+    const double centre = (r.interval->low + r.interval->high) / 2, half = r.interval->high - centre;
+    ++of;
+    held += misorientation(40, centre) <= half ? 1 : 0;
+  }
+  EXPECT_NEAR(100.0 * held / of, 95, 6);
+}
+
 TEST(Orientation, ALatticeTurnedByTheWidthIsWithinIt) {
   EXPECT_EQ(value(analyze(film({frame_of(lattice(-10, 0, 20, 0, 20))})), "orientation_a"), 1);
   EXPECT_EQ(value(analyze(film({frame_of(lattice(20, 0, 20, 0, 20))})), "orientation_b"), 1);
