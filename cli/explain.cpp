@@ -97,7 +97,7 @@ void run(const ExplainOptions& o, const Common& common) {
   ProgressBar bar(common, "placing beads");
   const sim::Cost cost = sim::measure_cost(scene, kMeasuredSeconds, common.threads, bar);
   sim::Plan plan = cost.plan;
-  sim::state_step_error(scene, plan);
+  sim::state_step_error(scene, plan, cost.start_speeds);
   const nlohmann::json d = nlohmann::json::parse(sim::cost_json(scene, cost));
   print_result(common, d, as_text(plan, scene, cost));
 }

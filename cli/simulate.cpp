@@ -350,6 +350,7 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
   const std::vector<std::string> told =
       sim::make_plan(scene, start.state.beads).warnings;  // printed now, because settling can take long
   for (const std::string& warning : told) note(common, warning);
+  const auto speeds = sim::speeds_of_start(scene, start.state.beads);
   sim::Simulation run(std::move(scene), std::move(start.state), sim::SolverKind::best, common.threads);
 
   constexpr double kTenMinutes = 600;  // s
@@ -366,7 +367,7 @@ void run_simulate(const SimulateOptions& options, const Common& common) {
                     .output = options.output,
                     .begun_at = start.begun_at,
                     .seconds = seconds};
-  sim::state_step_error(run.scene(), ended.plan);
+  sim::state_step_error(run.scene(), ended.plan, speeds);
   nlohmann::json document = describe(ended);
   document["warnings"] = warnings;
   std::string text = as_text(ended, common.verbose);

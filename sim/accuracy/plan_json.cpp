@@ -33,7 +33,7 @@ std::string plan_json(const Plan& plan) {
 
 std::string cost_json(const Scene& scene, const Cost& cost) {
   Plan plan = cost.plan;
-  state_step_error(scene, plan);
+  state_step_error(scene, plan, cost.start_speeds);
   nlohmann::json d = as_json(plan);
   const double beads = static_cast<double>(cost.beads);
   d["beads"] = cost.beads;
@@ -64,7 +64,7 @@ std::string scene_provenance(Provenance provenance, const Scene& scene, const st
   if (!scene.record.file.empty()) provenance.inputs.push_back(scene.record.file);
   provenance.config = scene.resolved;
   Plan plan = make_plan(scene, beads);
-  state_step_error(scene, plan);
+  state_step_error(scene, plan, speeds_of_start(scene, beads));
   provenance.plan = plan_json(plan);
   provenance.seed = scene.seed;
   provenance.threads = threads_for(scene.n_beads.value_or(0), threads);

@@ -30,13 +30,20 @@ Scene in_empty_space(Scene s, const Plan& plan) {
   return s;
 }
 
-/// Typical impact speed of the scene, estimated before a run.
-double meeting_speed(const Scene& s, const Plan& plan) {
-  const double fast = std::max({2 * s.drive.velocity_bound(), std::sqrt(2 * s.g()), 1e-3});
+/// The speed, or the largest at which beads overlap and travel within half of the guard's bounds.
+double within_bounds(double speed, const Scene& s, const Plan& plan) {
   // With the linear law the overlap is at most v t_c/pi.
   const double gentle = std::numbers::pi * plan.overlap_bound / (2 * s.steps_per_contact * plan.dt);
-  return std::min({fast, gentle, plan.travel_bound / (2 * plan.dt)});
+  return std::min({speed, gentle, plan.travel_bound / (2 * plan.dt)});
 }
+
+/// Speed at which gravity and the drive make beads meet, estimated before a run; 0 without both.
+double speed_of_forces(const Scene& s) {
+  return std::max(2 * s.drive.velocity_bound(), std::sqrt(2 * s.g()));
+}
+
+constexpr int kPhases = 32;     ///< entry phases of the stated errors
+constexpr double kSlow = 1e-3;  ///< speed of impacts in a scene that sets nothing in motion, sqrt(g sigma)
 
 /// e of one collision for each of `phases` entry phases; nothing if a pair does not part.
 std::vector<double> restitutions(const Scene& space, double dt, double v, int phases) {
@@ -97,12 +104,24 @@ std::optional<ImpactErrors> friction_error(const Scene& space, const Plan& plan,
 
 }  // namespace
 
-std::optional<StepError> step_error(const Scene& scene, const Plan& plan, int phases) {
+std::vector<double> stated_speeds(const Scene& scene, const Plan& plan,
+                                  const std::optional<StartSpeeds>& start) {
+  constexpr double kAlike = 1.1;  // ratio of speeds of which one is stated
+  const double forces = speed_of_forces(scene);
+  if (!start) return {within_bounds(std::max(forces, kSlow), scene, plan)};
+  const double typical = within_bounds(std::max(forces, start->typical), scene, plan),
+               largest = within_bounds(std::max(forces, start->largest), scene, plan);
+  if (largest < kAlike * typical) return {largest};
+  return {typical, largest};
+}
+
+std::optional<StepError> step_error(const Scene& scene, const Plan& plan, int phases,
+                                    std::optional<double> speed) {
   constexpr double kFiner = 8, kFine = 2000;
   const Scene space = in_empty_space(scene, plan);
   Scene fine = space;
   fine.integrator = "split";
-  const double v = meeting_speed(scene, plan);
+  const double v = speed.value_or(within_bounds(std::max(speed_of_forces(scene), kSlow), scene, plan));
   const auto exact =
       restitutions(fine, plan.dt / std::max(kFiner, std::ceil(kFine / scene.steps_per_contact)), v, 1);
   const auto measured = restitutions(space, plan.dt, v, phases);
@@ -113,26 +132,29 @@ std::optional<StepError> step_error(const Scene& scene, const Plan& plan, int ph
 
 namespace {
 
-std::string sentence(const StepError& error) {
+/// The result at a speed, in words.
+std::string clause(double speed, const std::optional<StepError>& error) {
+  if (!error) return fmt::format("two beads that meet at v = {:.3g} do not part", speed);
   std::string s = fmt::format(
-      ": e of two beads that meet at v = {:.3g} is {:.4g} and errs by up to {:.2g}, by {:.2g} on average "
+      "e of two beads that meet at v = {:.3g} is {:.4g} and errs by up to {:.2g}, by {:.2g} on average "
       "over collisions",
-      error.speed, error.restitution, error.error.largest, error.error.mean);
-  if (error.friction)
+      error->speed, error->restitution, error->error.largest, error->error.mean);
+  if (error->friction)
     s += fmt::format(
         "; at 15 to 75 degrees friction changes R w by {:.2g} v, with an error of {:.2g} v rms and up to "
         "{:.2g} v",
-        error.friction->spin_change, error.friction->spin.rms, error.friction->spin.largest);
+        error->friction->spin_change, error->friction->spin.rms, error->friction->spin.largest);
   return s;
 }
 
 }  // namespace
 
-void state_step_error(const Scene& scene, Plan& plan) {
-  const auto error = step_error(scene, plan);
+void state_step_error(const Scene& scene, Plan& plan, const std::optional<StartSpeeds>& start) {
+  std::string text;
+  for (const double speed : stated_speeds(scene, plan, start))
+    text += (text.empty() ? ": " : "; ") + clause(speed, step_error(scene, plan, kPhases, speed));
   for (Effect& effect : plan.effects)
-    if (effect.name == kTimeIntegration)
-      effect.reason += error ? sentence(*error) : ": colliding beads do not part";
+    if (effect.name == kTimeIntegration) effect.reason += text;
 }
 
 }  // namespace twincell::sim

@@ -3,10 +3,12 @@
 /// Error of a single collision with the law, integrator and time step of a scene.
 
 #include <optional>
+#include <vector>
 
 #include "sim/accuracy/impacts.hpp"
 #include "sim/scene/plan.hpp"
 #include "sim/scene/scene.hpp"
+#include "sim/start/start_speeds.hpp"
 
 namespace twincell::sim {
 
@@ -22,15 +24,22 @@ struct StepError {
 };
 
 /// Simulates a collision of two beads of median radius, without gravity, at each of `phases` entry phases,
-/// with the time step of the plan. They meet at twice the largest speed of the plate, or at the speed of a
-/// fall by sigma if that is larger, but never so fast that they overlap, or travel in a step, by more than
-/// half of the guard's bounds. The reference uses "split" and eight times as many steps, at least 2000 per
-/// contact; its own error is about 1e-8 at e = 0.9. Oblique impacts are compared with their exact outcome
-/// (exact_outcomes).
-/// \return nothing if the beads do not part, that is, with critical damping or more
-std::optional<StepError> step_error(const Scene& scene, const Plan& plan, int phases = 32);
+/// with the time step of the plan. They meet at `speed`; without one, at twice the largest speed of the
+/// plate, or at the speed of a fall by sigma if that is larger, but never so fast that they overlap, or
+/// travel in a step, by more than half of the guard's bounds. The reference uses "split" and eight times as
+/// many steps, at least 2000 per contact; its own error is about 1e-8 at e = 0.9. Oblique impacts are
+/// compared with their exact outcome (exact_outcomes). \return nothing if the beads do not part, that is,
+/// with critical damping or more, or if cohesion holds them
+std::optional<StepError> step_error(const Scene& scene, const Plan& plan, int phases = 32,
+                                    std::optional<double> speed = {});
 
-/// Adds the result of step_error() to the list of effects of the plan.
-void state_step_error(const Scene& scene, Plan& plan);
+/// The speeds for which the error of a collision is stated, sqrt(g sigma): that of step_error(), or the
+/// typical and the largest speed of the start where they are larger. In ascending order.
+std::vector<double> stated_speeds(const Scene& scene, const Plan& plan,
+                                  const std::optional<StartSpeeds>& start);
+
+/// Adds the results of step_error() at stated_speeds() to the list of effects of the plan.
+/// \param start speeds_of_start() of the beads
+void state_step_error(const Scene& scene, Plan& plan, const std::optional<StartSpeeds>& start = {});
 
 }  // namespace twincell::sim

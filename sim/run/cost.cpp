@@ -93,6 +93,7 @@ Cost measure_cost(const Scene& scene, double seconds, int threads, Progress& pro
   RunState state = placed(scene, progress);
   Cost cost;
   cost.plan = make_plan(scene, state.beads);
+  cost.start_speeds = speeds_of_start(scene, state.beads);
   const Plan& plan = cost.plan;
   System system = make_system(scene, plan);
   if (!state.driven) system.drive = scene.drive.at_rest();

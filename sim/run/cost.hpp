@@ -9,14 +9,16 @@
 #include "core/progress.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/scene/plan.hpp"
+#include "sim/start/start_speeds.hpp"
 
 namespace twincell::sim {
 
 struct Cost {
   Plan plan;  ///< for the beads of the start
   std::size_t beads = 0;
-  std::string solver;         ///< Solver::description()
-  double bytes_per_bead = 0;  ///< memory in use for beads
+  std::optional<StartSpeeds> start_speeds;  ///< of the beads of the start
+  std::string solver;                       ///< Solver::description()
+  double bytes_per_bead = 0;                ///< memory in use for beads
   double bytes_per_pair = 0;  ///< memory in use, per listed pair or wall contact; 0 without listed contacts
   double pairs_per_bead = 0;  ///< listed contacts per bead
   std::int64_t measured_steps = 0;

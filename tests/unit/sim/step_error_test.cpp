@@ -25,6 +25,9 @@ struct Explained {
         error(step_error(scene, plan, 128)) {}
   [[nodiscard]] std::string reason() {
     state_step_error(scene, plan);
+    return reason_as_stated();
+  }
+  [[nodiscard]] std::string reason_as_stated() const {
     return std::find_if(plan.effects.begin(), plan.effects.end(),
                         [](const Effect& e) { return e.name == kTimeIntegration; })
         ->reason;
@@ -120,6 +123,60 @@ TEST(StepError, OfFrictionIsOfTheStepThatStifferWallsSet) {
   const Explained fine(law + stepped(50.37 * std::sqrt(50.0)));
   ASSERT_NEAR(stiff.plan.dt / fine.plan.dt, 1, 0.02);
   EXPECT_NEAR(stiff.error->friction->spin.rms / fine.error->friction->spin.rms, 1, 0.05);
+}
+
+/// Two beads at a large distance with these velocities along x, in a table start without gravity and drive.
+StartSpeeds of_two_beads(const Scene& scene, double v_i, double v_j) {
+  std::vector<Bead> beads(2);
+  beads[0].vx = v_i, beads[1].vx = v_j;
+  const auto speeds = speeds_of_start(scene, beads);
+  EXPECT_TRUE(speeds);
+  return speeds.value_or(StartSpeeds{});
+}
+
+const char* const kFreeSpace =
+    "gravity = 0.0\nlid = \"wall\"\nheight = 20.0\n[start]\nkind = \"random\"\n[drive]\namplitude = "
+    "0.0\nomega = 1.0\n";
+
+TEST(StepError, IsAtTheSpeedsOfTheStart) {
+  Explained hertz(std::string(kFreeSpace) +
+                  "[contact]\nnormal = \"hertz\"\nyoungs_modulus = 1e9\nviscous_time = 2e-6\n");
+  const StartSpeeds alike = of_two_beads(hertz.scene, 5, -5), wall = of_two_beads(hertz.scene, 3, 3);
+  EXPECT_NEAR(alike.typical, 10, 1e-12);
+  EXPECT_NEAR(alike.largest, 10, 1e-12);
+  EXPECT_NEAR(wall.typical, 3, 1e-12);
+  EXPECT_NEAR(wall.largest, 3, 1e-12);
+  EXPECT_EQ(stated_speeds(hertz.scene, hertz.plan, alike), std::vector<double>{10});
+  EXPECT_EQ(stated_speeds(hertz.scene, hertz.plan, {}), std::vector<double>{1e-3});
+  const std::vector<double> two = stated_speeds(hertz.scene, hertz.plan, StartSpeeds{1, 20});
+  EXPECT_EQ(two, (std::vector<double>{1, 20}));
+  // e of viscoelastic beads falls with the speed: 1 - e ~ v^(1/5).
+  state_step_error(hertz.scene, hertz.plan, StartSpeeds{1, 20});
+  const std::string text = hertz.reason_as_stated();
+  EXPECT_NE(text.find("meet at v = 1 is 0.98"), std::string::npos) << text;
+  EXPECT_NE(text.find("; e of two beads that meet at v = 20 is 0.97"), std::string::npos) << text;
+}
+
+TEST(StepError, SaysAtWhichSpeedCohesionHoldsBeads) {
+  // Beads part if their energy outlasts the attraction and the dashpot: at 1, not at 0.001.
+  Explained cohesive(
+      std::string(kFreeSpace) +
+      "[contact]\nnormal = \"cohesive\"\nk_n = 1e6\ngamma_n = 100.0\npull_off_force = 100.0\n");
+  EXPECT_FALSE(step_error(cohesive.scene, cohesive.plan, 4, 1e-3));
+  EXPECT_TRUE(step_error(cohesive.scene, cohesive.plan, 4, 1.0));
+  state_step_error(cohesive.scene, cohesive.plan, StartSpeeds{0.01, 1});
+  const std::string text = cohesive.reason_as_stated();
+  EXPECT_NE(text.find("two beads that meet at v = 0.01 do not part; e of two beads that meet at v = 1 is 0."),
+            std::string::npos)
+      << text;
+}
+
+TEST(StepError, OfABedThatSettlesIsThatOfItsForces) {
+  const Explained bed(stepped(20, "split"));
+  std::vector<Bead> beads(2);
+  beads[0].vx = 50;
+  EXPECT_FALSE(speeds_of_start(bed.scene, beads)) << "settling takes these velocities away";
+  EXPECT_EQ(stated_speeds(bed.scene, bed.plan, {}), std::vector<double>{bed.error->speed});
 }
 
 TEST(StepError, IsOfTheUsualBeadAndSaysSo) {
