@@ -75,6 +75,34 @@ void warn_of_steps(const Scene& s, const Plan& plan, std::vector<std::string>& w
   }
 }
 
+/// Whether these normal contacts give back all energy.
+bool is_elastic(const ContactLaws& laws) {
+  return std::visit(
+      []<class Law>(const Law& law) {
+        if constexpr (requires { law.damping; })
+          return law.damping.eta(1) == 0;
+        else if constexpr (requires { law.viscous_time; })
+          return law.viscous_time == 0;
+        else
+          return law.restitution_fast == 1;
+      },
+      laws.normal);
+}
+
+/// The errors of "split" in e have one sign, so that they add up where nothing else takes energy away.
+void warn_of_lost_energy(const Scene& s, const Plan& plan, std::vector<std::string>& warnings) {
+  constexpr double kManyStepsPerContact = 100;
+  const bool conserves = !plan.rotation && s.plate_drag == 0 && is_elastic(plan.laws->bead) &&
+                         std::all_of(plan.laws->walls.begin(), plan.laws->walls.end(), is_elastic);
+  if (!conserves || plan.event_driven || !plan.locate || s.steps_per_contact >= kManyStepsPerContact) return;
+  warnings.push_back(fmt::format(
+      "no contact dissipates energy, but the steps of \"{}\" with time.steps_per_contact = {:g} take a "
+      "little "
+      "away in each collision, which adds up in long runs; set time.steps_per_contact = {:g}, "
+      "time.integrator = \"verlet\" or, where the scene permits it, time.stepping = \"event-driven\".",
+      s.integrator, s.steps_per_contact, kManyStepsPerContact));
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const Scene& s, const Plan& plan) {
@@ -88,6 +116,7 @@ std::vector<std::string> warnings_of(const Scene& s, const Plan& plan) {
     warnings.emplace_back(
         "beads do not turn without friction (contact.mu = 0), so that contact.rolling has no effect.");
   warn_of_steps(s, plan, warnings);
+  warn_of_lost_energy(s, plan, warnings);
   return warnings;
 }
 
