@@ -152,6 +152,47 @@ TEST(Statistics, ASlowMotionUnderFastNoise) {
   test::validate({"V5.12", "coverage, %: noise over tau = 20, 100 values", 75.7, 4, outside}, cover(100, 20));
 }
 
+// A series that is shorter than its memory shows too short a correlation. Those that show the shortest pass
+// the test of their length, and their intervals are too narrow: no rule on the estimated correlation time
+// finds them, as a stricter one leaves those that are estimated worst.
+TEST(Statistics, ARunThatIsShorterThanItsMemoryMayHaveAnIntervalThatIsTooNarrow) {
+  std::mt19937_64 generator(24);
+  const auto linear = [&](double tau) {
+    return series_interval(correlated(400, (2 * tau - 1) / (2 * tau + 1), generator));
+  };
+  // The mean over four waves of a squared amplitude, as S(q) of a gas; half as long a memory as the
+  // amplitude.
+  const auto squared = [&](double tau) {
+    std::vector<double> sum(400, -1);
+    const double a = (4 * tau - 1) / (4 * tau + 1);
+    for (int wave = 0; wave < 4; ++wave) {
+      const std::vector<double> x = correlated(400, a, generator);
+      for (std::size_t i = 0; i < x.size(); ++i) sum[i] += x[i] * x[i] * (1 - a * a) / 4;
+    }
+    return series_interval(sum);
+  };
+  struct Case {
+    const char* what;
+    double tau, given, coverage;
+    std::function<std::optional<Interval>(double)> interval;
+  };
+  for (const Case& c : {Case{"first order", 20, 97.5, 95, linear}, Case{"first order", 40, 60, 90, linear},
+                        Case{"first order", 180, 18, 49, linear}, Case{"squares", 20, 97, 94, squared},
+                        Case{"squares", 50, 58, 84, squared}, Case{"squares", 180, 20, 45, squared}}) {
+    int given = 0, held = 0;
+    constexpr int kTrials = 2000;
+    for (int k = 0; k < kTrials; ++k)
+      if (const auto interval = c.interval(c.tau)) {
+        ++given;
+        held += interval->low <= 5 && 5 <= interval->high ? 1 : 0;
+      }
+    std::printf("SHORT|%s, 400 values, tau %g|given %.1f %%|coverage %.1f %%\n", c.what, c.tau,
+                100.0 * given / kTrials, 100.0 * held / given);
+    EXPECT_NEAR(100.0 * given / kTrials, c.given, 4) << c.what << ", " << c.tau;
+    EXPECT_NEAR(100.0 * held / given, c.coverage, c.tau > 50 ? 10 : 4) << c.what << ", " << c.tau;
+  }
+}
+
 TEST(Statistics, ASeriesThatOscillatesHasANarrowInterval) {
   // x_i = 2 r cos(2 pi/20) x_{i-1} - r^2 x_{i-2} + noise: a height that rings with a period of 20. Its mean
   // is known far better than its first correlations suggest.

@@ -114,6 +114,61 @@ void cover(const std::string& what, const Generator& make, int cycles, const Tru
   }
 }
 
+/// The elements of an array whose intervals are counted, and their expected values.
+struct Elements {
+  std::string name;
+  std::vector<std::size_t> index;
+  std::vector<double> truth;
+  double known = 95;  ///< coverage, %
+};
+
+/// The same of arrays: each of these elements in each trajectory counts.
+void cover_elements(const std::string& what, const Generator& make, int cycles,
+                    const std::vector<Elements>& arrays, std::uint64_t seed) {
+  AnalysisOptions options;
+  for (const Elements& a : arrays)
+    for (const char* end : {"", "_low", "_high"}) options.only.push_back(a.name + end);
+  Random random(seed);
+  std::map<std::string, Counts> counts;
+  for (int k = 0; k < kTrajectories; ++k) {
+    const std::vector<Result> results = analyze(make(cycles, random), options);
+    for (const Elements& a : arrays) {
+      const Result &low = find_result(results, a.name + "_low"),
+                   &high = find_result(results, a.name + "_high");
+      Counts& c = counts[a.name];
+      for (std::size_t e = 0; e < a.index.size(); ++e) {
+        if (!low.present() || !std::isfinite(low.values[a.index[e]])) {
+          ++c.none;
+          continue;
+        }
+        ++c.of;
+        c.above += low.values[a.index[e]] > a.truth[e] ? 1 : 0;
+        c.held += low.values[a.index[e]] <= a.truth[e] && a.truth[e] <= high.values[a.index[e]] ? 1 : 0;
+      }
+    }
+  }
+  for (const Elements& a : arrays) {
+    const Counts& c = counts[a.name];
+    for (const char* end : {"", "_low", "_high"}) plural().insert(a.name + end);
+    std::printf("COVERAGE|%s|%s|%d|%d|%.1f|%.1f|%.1f\n", a.name.c_str(), what.c_str(), cycles, c.of,
+                100.0 * c.held / c.of, 100.0 * (c.of - c.held - c.above) / c.of, 100.0 * c.above / c.of);
+    EXPECT_GT(c.of, c.none) << a.name;
+    test::validate(
+        {"V5.12", "coverage, %, of the elements of " + a.name + ", " + what, a.known, 2, "binomial"},
+        100.0 * c.held / c.of);
+  }
+}
+
+/// Elements of an array with expected values from one long trajectory.
+Elements elements_of_long_run(const Generator& make, int cycles, const std::string& name,
+                              const std::vector<std::size_t>& index, std::uint64_t seed) {
+  Random random(seed);
+  const auto results = analyze(make(cycles, random), {.only = {name}});
+  Elements elements{.name = name, .index = index, .truth = {}};
+  for (const std::size_t e : index) elements.truth.push_back(find_result(results, name).values.at(e));
+  return elements;
+}
+
 /// Expected values from one long trajectory.
 Truth long_run(const Generator& make, int cycles, const std::vector<std::string>& names,
                AnalysisOptions options, std::uint64_t seed) {
@@ -507,6 +562,86 @@ void cover_contact_forces() {
   cover("a pressed column", pressed, 80, long_run(pressed, 40000, names, {}, 16), {}, 17);
 }
 
+// --- points without interaction ---
+
+constexpr std::size_t kPoints = 20;
+constexpr double kPeriod = 6;
+
+TrajectoryInfo info_of_points() {
+  TrajectoryInfo info = info_of(kPoints, 1, Vec3(kPeriod, 1, kPeriod));
+  info.box.dimension = 2;
+  info.box.boundary = {Boundary::periodic, Boundary::open, Boundary::periodic};
+  info.columns.velocity = info.columns.identity = true;
+  return info;
+}
+
+/// Points whose places are drawn anew, all at once, in 7 of 10 frames.
+MemoryTrajectory redrawn(int cycles, Random& random) {
+  MemoryTrajectory out(info_of_points());
+  std::vector<Vec3> places;
+  for (int j = 0; j < cycles; ++j) {
+    if (places.empty() || uniform(random, 0, 1) < 0.7) {
+      places.clear();
+      for (std::size_t i = 0; i < kPoints; ++i)
+        places.emplace_back(uniform(random, 0, kPeriod), 0, uniform(random, 0, kPeriod));
+    }
+    Frame frame = frame_of(out.info(), j, 0);
+    frame.position = places;
+    frame.velocity.assign(kPoints, Vec3::Zero());
+    for (std::size_t i = 0; i < kPoints; ++i) frame.id.push_back(static_cast<std::int64_t>(i));
+    out.append(frame);
+  }
+  return out;
+}
+
+constexpr double kStepOfPoints = 0.1, kMemoryOfVelocities = 0.6;
+
+/// Points that walk at random, with velocities that are correlated from frame to frame. They begin anywhere.
+MemoryTrajectory walk(int cycles, Random& random, double step) {
+  MemoryTrajectory out(info_of_points());
+  std::vector<Vec3> places;
+  for (std::size_t i = 0; i < kPoints; ++i)
+    places.emplace_back(uniform(random, 0, kPeriod), 0, uniform(random, 0, kPeriod));
+  std::vector<Correlated> v = many_correlated(2 * kPoints, kMemoryOfVelocities, random);
+  for (int j = 0; j < cycles; ++j) {
+    Frame frame = frame_of(out.info(), j, 0);
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      places[i] += step * Vec3(normal(random), 0, normal(random));
+      frame.velocity.emplace_back(v[2 * i].next(), 0, v[2 * i + 1].next());
+      frame.id.push_back(static_cast<std::int64_t>(i));
+    }
+    frame.position = places;
+    out.append(frame);
+  }
+  return out;
+}
+MemoryTrajectory walking(int cycles, Random& random) {
+  return walk(cycles, random, kStepOfPoints);
+}
+
+void cover_elements_of_arrays() {
+  // r from 0.5 to 2.9 sigma, |q| from 2 to 15.8/sigma
+  Elements g{.name = "g_r", .index = {}, .truth = {}}, s{.name = "S_q", .index = {}, .truth = {}};
+  for (std::size_t b = 9; b < 58; b += 6) g.index.push_back(b), g.truth.push_back(1);
+  for (std::size_t b = 10; b < 79; b += 6) s.index.push_back(b), s.truth.push_back(1);
+  cover_elements(
+      "places that last 1.4 frames", redrawn, 60,
+      {g, s, elements_of_long_run(redrawn, 20000, "voronoi_area_density", {4, 10, 16, 22, 28, 34}, 18)}, 19);
+  const double step = 2 * kStepOfPoints * kStepOfPoints, a = kMemoryOfVelocities;
+  cover_elements("points that walk", walking, 60,
+                 {{.name = "msd", .index = {0, 1, 3, 7}, .truth = {step, 2 * step, 4 * step, 8 * step}},
+                  {.name = "vacf", .index = {1, 2, 4}, .truth = {a, a * a, std::pow(a, 4)}}},
+                 20);
+  // Neighbours stay for tens of frames: the run is a few times as long as its memory.
+  const double pairs = (kPoints - 1) * std::numbers::pi * 1.05 * 1.05 / (kPeriod * kPeriod);
+  cover_elements("points that walk slowly", walking, 200,
+                 {{.name = "g_r", .index = {19, 39, 57}, .truth = {1, 1, 1}, .known = 87}}, 23);
+  cover("points that walk slowly", walking, 200, {{"contact_number", pairs}}, {}, 24,
+        {{"contact_number", 75}});
+  cover_elements("a pressed column", pressed, 80,
+                 {elements_of_long_run(pressed, 40000, "contact_force_density", {2, 6, 10, 14, 18}, 21)}, 22);
+}
+
 TEST(Coverage, EveryResultWithAnInterval) {
   cover_temperatures();
   cover_heights_and_volume_fractions();
@@ -517,6 +652,7 @@ TEST(Coverage, EveryResultWithAnInterval) {
   cover_circulations();
   cover_flights();
   cover_contact_forces();
+  cover_elements_of_arrays();
   // Words, arrays, counts, and results that state themselves why they have no interval.
   const std::set<std::string> without = {"s_k",
                                          "half_pixel",
@@ -553,29 +689,14 @@ TEST(Coverage, EveryResultWithAnInterval) {
                                          "T_z_volume",
                                          "h_cm_k",
                                          "h_cm_j",
-                                         "g_r",
                                          "g_r_distance",
                                          "g_peak",
                                          "g_peak_distance",
-                                         "msd",
                                          "msd_lag",
-                                         "g_r_low",
-                                         "g_r_high",
-                                         "msd_low",
-                                         "msd_high",
-                                         "S_q",
-                                         "S_q_low",
-                                         "S_q_high",
                                          "S_q_wavenumber",
                                          "S_q_peak",
                                          "S_q_peak_wavenumber",
-                                         "vacf",
-                                         "vacf_low",
-                                         "vacf_high",
                                          "vacf_lag",
-                                         "voronoi_area_density",
-                                         "voronoi_area_density_low",
-                                         "voronoi_area_density_high",
                                          "voronoi_area_ratio",
                                          "stress",
                                          "stress_kinetic",
@@ -586,9 +707,6 @@ TEST(Coverage, EveryResultWithAnInterval) {
                                          "stress_field",
                                          "stress_field_x",
                                          "stress_field_z",
-                                         "contact_force_density",
-                                         "contact_force_density_low",
-                                         "contact_force_density_high",
                                          "contact_force_ratio"};
   for (const std::string& name : result_names())
     EXPECT_NE(without.contains(name), plural().contains(name)) << name;
