@@ -101,7 +101,8 @@ struct ContactInterval {
   V ended;                                ///< F_n at the end of the interval: now, or at last touch
   V begun{0.0};                           ///< F_n at its start: at first touch, or at the previous position
   V overlap_begun{0.0}, overlap_ended{0.0};  ///< overlaps at these two instants
-  /// Fraction of the interval before a positive F_n vanishes; 1 if it does not vanish.
+  /// Fraction of the interval before F_n vanishes, from push to pull or, of a contact that attracts, from
+  /// pull to push; 1 if it does not vanish.
   V pressed{1.0};
   bool any = false;  ///< in some lane a contact begins, ends, or F_n vanishes
 };
@@ -259,6 +260,24 @@ template <class Laws, Velocity kVelocity, class V, int D>
         interval.pressed =
             select(vanishes, interval.begun / max(interval.begun - interval.ended, V(kTiny)), V(1.0));
         interval.any = true;
+      }
+      // A contact that attracts may pull from first touch on until the spring outweighs the attraction.
+      if constexpr (requires { Normal::kAttracts; }) {
+        const auto pushes = both(t.acting, interval.ended > zero);
+        if (locate && any(pushes)) {
+          const V start = half * (t.v_n + t.before), behind = fma(t.v_n, dt, a.overlap);
+          const V held_before = Normal::force(c_n, behind, start, own);
+          const V begun = select(interval.entering, interval.begun, held_before);
+          const auto rises = both(both(pushes, begun < zero), either(t.was, interval.entering));
+          if (any(rises)) {
+            interval.begun = select(rises, begun, interval.begun);
+            if constexpr (ReadsOverlap<Tangential>)
+              interval.overlap_begun = select(both(rises, t.was), max(behind, zero), interval.overlap_begun);
+            interval.pressed = select(rises, interval.begun / min(interval.begun - interval.ended, V(-kTiny)),
+                                      interval.pressed);
+            interval.any = true;
+          }
+        }
       }
     }
   }

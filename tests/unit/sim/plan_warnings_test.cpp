@@ -28,7 +28,8 @@ TEST(PlanWarnings, OfEnergyThatOnlyStepsTake) {
   EXPECT_TRUE(warns_of_lost_energy("restitution = 1.0\n" + smooth));
   EXPECT_TRUE(warns_of_lost_energy("c_n = 0.0\n" + smooth));
   EXPECT_TRUE(warns_of_lost_energy(hertz));
-  EXPECT_TRUE(warns_of_lost_energy("normal = \"velocity-dependent-restitution\"\nrestitution_fast = 1.0\n" + smooth));
+  EXPECT_TRUE(
+      warns_of_lost_energy("normal = \"velocity-dependent-restitution\"\nrestitution_fast = 1.0\n" + smooth));
   // Something dissipates.
   EXPECT_FALSE(warns_of_lost_energy("restitution = 0.99\n" + smooth));
   EXPECT_FALSE(warns_of_lost_energy("restitution = 1.0\nmu = 0.1\nk_t = 1e4\n"));
