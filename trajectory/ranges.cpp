@@ -128,6 +128,21 @@ void require_ranges(const Frame& frame, std::size_t index, const TrajectoryInfo&
     for (const double component : t)
       if (component < 0 || std::isinf(component))
         refuse(fmt::format("a temperature is {:g}; it must be finite and not negative.", component));
+  if (const BedForces& mean = frame.force_mean; mean.known()) {
+    if (mean.in_contact < 0 || mean.in_contact > 1 + 1e-9)
+      refuse(fmt::format("beads touch for a fraction {:g} of the time; it must be from 0 to 1.",
+                         mean.in_contact));
+    const bool walls =
+        std::ranges::all_of(mean.wall_normal_force, [](double f) { return std::isfinite(f); }) &&
+        std::ranges::all_of(mean.wall_force, [](const Vec3& f) { return f.allFinite(); });
+    if (!walls || !mean.stress.allFinite() || !mean.kinetic.allFinite() ||
+        !std::isfinite(mean.normal_force) || !std::isfinite(mean.tangential_force))
+      refuse("its time means of forces and stress must be finite.");
+    if (mean.kinetic.diagonal().minCoeff() < 0 || mean.tangential_force < 0)
+      refuse("its mean kinetic stress and tangential force must not be negative.");
+  } else if (std::isinf(mean.in_contact)) {
+    refuse("the fraction of the time in which beads touch is infinite; it must be from 0 to 1.");
+  }
   if (!info.columns.phase) return;
   if (frame.phase < -1 || frame.phase >= std::max(info.phases_per_cycle, 1))
     refuse(fmt::format("its phase is {}; it must be below {} phases per cycle.", frame.phase,

@@ -7,6 +7,7 @@
 /// be missing from some frames. A slot that is empty in a frame has id -1 and position NaN, never zero. A
 /// column that was not measured is absent (an empty vector), never filled with substitutes.
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -31,6 +32,7 @@ struct Columns {
   bool time_mean = false;       ///< Frame::time_mean
   bool contacts = false;        ///< Frame::contacts, force, moment and rim_speed
   bool contact_forces = false;  ///< Frame::contact_forces
+  bool force_mean = false;      ///< Frame::force_mean
 };
 
 /// Where a run stands in the phase diagram, as the program that made the run knew it.
@@ -47,7 +49,7 @@ struct TrajectoryInfo {
   Box box;
   std::optional<Drive> drive;
   int phases_per_cycle = 0;   ///< N_k, frames per drive cycle; 0 if not phase-locked
-  int samples_per_cycle = 0;  ///< of Frame::time_mean; 0 if absent
+  int samples_per_cycle = 0;  ///< of Frame::time_mean and force_mean; 0 if absent
   Scale scale;
   RunConditions conditions;
   std::string source = "unknown";    ///< "simulation", "experiment" or "unknown"
@@ -86,6 +88,28 @@ struct TimeMean {
   Vec3 temperature_coarse = Vec3::Constant(kUnknown);  ///< from every second one of the same samples
 };
 
+/// Forces on the walls and stress of a bed, at one instant (bed_forces.hpp) or averaged over the time since
+/// the previous frame. The means are over every second sample of TimeMean: nearly all of the momentum that a bed
+/// takes from the plate passes while it lands, so that frames at a few phases per cycle would alias them.
+struct BedForces {
+  using Tensor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> wall_normal_force;       ///< [walls], of the beads on the wall, m g; positive: pressure
+  std::vector<Vec3> wall_force;                ///< [walls], of the beads on the wall, m g
+  Tensor stress = Tensor::Constant(kUnknown);  ///< of the contacts, positive in compression, m g/sigma^(d-1)
+  Tensor kinetic = Tensor::Constant(kUnknown);  ///< of the velocities, same unit
+  double in_contact = kUnknown;                 ///< fraction of the time with contacts between beads
+  double normal_force = kUnknown;      ///< mean normal force of these contacts, m g; 0 while there are none
+  double tangential_force = kUnknown;  ///< mean modulus of their tangential force; same
+
+  /// Whether the forces are known; not before the first frame of a run.
+  [[nodiscard]] bool known() const { return std::isfinite(in_contact); }
+  /// All zero, for a sum over samples.
+  static BedForces zero(std::size_t walls);
+  /// Adds `weight` times the forces of a sample with the same walls.
+  void add(const BedForces& sample, double weight);
+};
+
 /// History of a contact: its tangential displacement and any other state that its laws keep for its duration.
 /// Only a simulation with the same laws can interpret the values.
 struct ContactMemory {
@@ -117,6 +141,7 @@ struct Frame {
   std::int64_t cycle = -1;           ///< j, from 0; -1 unknown
   double plate_height = kNoHeight;   ///< along Drive::axis, sigma (plate.hpp); NaN unknown
   TimeMean time_mean;                ///< over the time since the previous frame
+  BedForces force_mean;              ///< over the time since the previous frame; without walls if unknown
   std::vector<Vec3> position;        ///< [n_beads], sigma; NaN where empty; not wrapped across periods
   std::vector<Vec3> position_sigma;  ///< [n_beads] or empty, standard uncertainty of each coordinate, sigma;
                                      ///< NaN where empty or not measured

@@ -1,5 +1,11 @@
 #include "analysis/force/contact_force.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "analysis/force/frames_of_landings.hpp"
+#include "analysis/observable/cycle_average.hpp"
 #include "analysis/observable/ratio_density.hpp"
 #include "analysis/statistics/ratio_average.hpp"
 
@@ -19,10 +25,16 @@ const char* const kThornton = "Thornton 2000";
 class ContactForces : public Observable {
  public:
   explicit ContactForces(const AnalysisContext& context)
-      : stored_(context.info.columns.contact_forces), density_(kForceRange, kForceWidth) {}
+      : info_(context.info),
+        stored_(info_.columns.contact_forces),
+        density_(kForceRange, kForceWidth),
+        in_contact_(info_.phases_per_cycle),
+        normal_over_time_(info_.phases_per_cycle),
+        tangential_over_time_(info_.phases_per_cycle) {}
 
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
+    add_time_mean(frame);
     std::vector<std::size_t> contacts(frame.position.size(), 0);
     double normal = 0, tangential = 0, pairs = 0;
     for (const ContactForce& c : frame.contact_forces) {
@@ -47,31 +59,43 @@ class ContactForces : public Observable {
   [[nodiscard]] std::vector<Result> results() const override {
     const std::string none = stored_ ? "no frame has a contact between beads"
                                      : "the trajectory stores no contact forces (simulate --contacts)";
-    const std::string which = "contacts between beads; mean over frames with contacts";
-    std::vector<Result> all = {mean_of(normal_,
-                                       {.name = "contact_force",
-                                        .unit = "m g",
-                                        .n_of = "frames",
-                                        .convention = "normal forces; " + which,
-                                        .source = kSource},
-                                       none)};
-    if (friction_.n() == 0) {
-      all.push_back(absent_result("tangential_to_normal", none, kSource));
-    } else {
-      Result r{.name = "tangential_to_normal",
-               .values = {friction_.mean()},
-               .unit = "1",
-               .n = friction_.n(),
-               .n_of = "frames",
-               .convention = "mean tangential over mean normal force; " + which,
+    const bool over_time = force_.n() > 0;
+    const std::string of_frames = "contacts between beads; mean over frames with contacts",
+                      which = over_time ? fmt::format(
+                                              "contacts between beads; mean over the time with contacts, {} "
+                                              "samples per cycle",
+                                              info_.samples_per_cycle / 2)
+                                        : of_frames;
+    const auto ratio = [&](const char* name, const RatioAverage& average, const std::string& unit,
+                           const std::string& what) {
+      if (average.n() == 0 || !std::isfinite(average.mean())) return absent_result(name, none, kSource);
+      Result r{.name = name,
+               .values = {average.mean()},
+               .unit = unit,
+               .n = average.n(),
+               .n_of = over_time ? "cycles" : "frames",
+               .convention = what + which,
                .source = kSource};
-      r.interval = friction_.interval(r.n_of);
-      if (!r.interval) r.no_interval = friction_.why_no_interval(r.n_of);
+      r.interval = average.interval(r.n_of);
+      if (!r.interval) r.no_interval = average.why_no_interval(r.n_of);
+      return over_time ? r : over_frames(std::move(r), info_);
+    };
+    std::vector<Result> all;
+    all.push_back(over_time ? ratio("contact_force", force_, "m g", "normal forces; ")
+                            : over_frames(mean_of(normal_,
+                                                  {.name = "contact_force",
+                                                   .unit = "m g",
+                                                   .n_of = "frames",
+                                                   .convention = "normal forces; " + which,
+                                                   .source = kSource},
+                                                  none),
+                                          info_));
+    all.push_back(ratio("tangential_to_normal", over_time ? friction_over_time_ : friction_, "1",
+                        "mean tangential over mean normal force; "));
+    for (Result& r :
+         density_.results("contact_force", "normal force", of_frames + aliasing_note(info_), kSource, none))
       all.push_back(std::move(r));
-    }
-    for (Result& r : density_.results("contact_force", "normal force", which, kSource, none))
-      all.push_back(std::move(r));
-    all.push_back(
+    all.push_back(over_frames(
         mean_of(contact_number_,
                 {.name = "mechanical_contact_number",
                  .unit = "1",
@@ -79,11 +103,23 @@ class ContactForces : public Observable {
                  .convention = "beads with two contacts or more; contacts with walls count; mean over "
                                "frames that have such beads",
                  .source = kThornton},
-                stored_ ? "no frame has a bead with two contacts" : none));
+                stored_ ? "no frame has a bead with two contacts" : none),
+        info_));
     return all;
   }
 
  private:
+  void add_time_mean(const Frame& frame) {
+    const BedForces& mean = frame.force_mean;
+    if (!mean.known()) return;
+    const auto time = in_contact_.add(frame, mean.in_contact),
+               normal = normal_over_time_.add(frame, mean.normal_force),
+               tangential = tangential_over_time_.add(frame, mean.tangential_force);
+    if (!time || !normal || !tangential || !(*time > 0)) return;
+    force_.add(*normal, *time);
+    if (*normal > 0) friction_over_time_.add(*tangential, *normal);
+  }
+
   void add_contact_number(const std::vector<std::size_t>& contacts) {
     double sum = 0, bearing = 0;
     for (const std::size_t n : contacts)
@@ -94,10 +130,13 @@ class ContactForces : public Observable {
     if (bearing > 0) contact_number_.add(sum / bearing);
   }
 
+  const TrajectoryInfo& info_;
   bool stored_;
   SeriesAverage normal_, contact_number_;
   RatioAverage friction_;
   RatioDensity density_;
+  CycleAverage in_contact_, normal_over_time_, tangential_over_time_;
+  RatioAverage force_, friction_over_time_;  ///< from cycles of means over time
 };
 
 }  // namespace

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <map>
 
-#include "analysis/force/branch_vector.hpp"
-#include "analysis/neighbours/bed_window.hpp"
+#include "analysis/force/frames_of_landings.hpp"
 #include "analysis/observable/array_with_interval.hpp"
+#include "analysis/observable/cycle_average.hpp"
+#include "trajectory/bed_forces.hpp"
+#include "trajectory/branch_vector.hpp"
 #include "trajectory/plate.hpp"
 
 namespace twincell::analysis {
@@ -20,20 +22,63 @@ constexpr NamedResult kResults[] = {{"stress"},
                                     {.name = "stress_xx_z", .along = "stress_z", .elsewhere = 0},
                                     {.name = "stress_zz_z", .along = "stress_z", .elsewhere = 0},
                                     {.name = "stress_z", .along = "stress_z"},
-                                    {"wall_force"}};
+                                    {"wall_force"},
+                                    {"wall_force_low"},
+                                    {"wall_force_high"},
+                                    {"wall_support"}};
 const char* const kSource = "Goldhirsch 2010";
-constexpr double kMargin = 0.5;  // sigma, of the window: a bead reaches half its diameter beyond its centre
 
-using Tensor = Eigen::Matrix3d;
+using Tensor = BedForces::Tensor;
 
 /// Sums over frames of a slab of the profiles.
 struct Slab {
   double xx = 0, zz = 0;
 };
 
+/// Means of the forces of frames, or of their means over time.
+class Means {
+ public:
+  /// \param frames_per_cycle 0: over all frames instead of whole cycles
+  Means(const TrajectoryInfo& info, int frames_per_cycle)
+      : pressure(frames_per_cycle),
+        kinetic_pressure(frames_per_cycle),
+        support(frames_per_cycle),
+        stress(9, CycleAverage(frames_per_cycle)),
+        kinetic(9, CycleAverage(frames_per_cycle)),
+        walls(info.walls.size(), CycleAverage(frames_per_cycle)),
+        dimension_(info.box.dimension) {}
+
+  /// \param weight of the beads, m g
+  void add_contacts(const Frame& frame, const BedForces& forces, double weight) {
+    pressure.add(frame, forces.stress.trace() / dimension_);
+    add_tensor(stress, frame, forces.stress);
+    double vertical = 0;
+    for (std::size_t w = 0; w < walls.size() && w < forces.wall_force.size(); ++w) {
+      walls[w].add(frame, forces.wall_normal_force[w]);
+      vertical -= forces.wall_force[w].z();
+    }
+    if (weight > 0) support.add(frame, vertical / weight);
+  }
+  void add_kinetic(const Frame& frame, const BedForces& forces) {
+    if (!forces.kinetic.allFinite()) return;
+    kinetic_pressure.add(frame, forces.kinetic.trace() / dimension_);
+    add_tensor(kinetic, frame, forces.kinetic);
+  }
+
+  CycleAverage pressure, kinetic_pressure, support;
+  std::vector<CycleAverage> stress, kinetic, walls;
+
+ private:
+  static void add_tensor(std::vector<CycleAverage>& sums, const Frame& frame, const Tensor& t) {
+    for (int k = 0; k < 9; ++k) sums[static_cast<std::size_t>(k)].add(frame, t(k / 3, k % 3));
+  }
+  int dimension_;
+};
+
 class Stress : public Observable {
  public:
-  explicit Stress(const AnalysisContext& context) : info_(context.info), wall_sums_(info_.walls.size(), 0) {
+  explicit Stress(const AnalysisContext& context)
+      : info_(context.info), of_frames_(info_, 0), over_time_(info_, info_.phases_per_cycle) {
     if (!info_.box.periodic(Axis::z)) return;
     const double height = info_.box.size().z();
     period_ = std::max<std::int64_t>(1, std::llround(std::min(height / kStressSlab, 1e9)));
@@ -42,55 +87,55 @@ class Stress : public Observable {
 
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
-    const std::vector<Vec3> centres = present_centres(frame);
-    if (!info_.columns.contact_forces || centres.empty()) return;
-    const BedWindow window = bed_window(centres, info_.box, kMargin);
-    if (!(window.content > 0)) return;
-    const double height = window.high.z() - window.low.z(),
-                 plate = plate_height(info_, frame).value_or(info_.box.lower.z());
-    Tensor contact = Tensor::Zero();
-    for (const ContactForce& c : frame.contact_forces) {
-      const Vec3 branch = branch_vector(c, info_), force = c.force();
-      contact += force * branch.transpose();
-      add_to_slabs(frame.position[static_cast<std::size_t>(c.i)].z() - plate, branch, force,
-                   height / window.content);
-      if (const auto w = static_cast<std::size_t>(-1 - c.j); c.j < 0 && w < wall_sums_.size())
-        wall_sums_[w] += c.normal_force;
-    }
-    contact_ += contact / window.content;
-    pressure_.add(contact.trace() / (window.content * info_.box.dimension));
+    const BedForces now = bed_forces(frame, info_);
+    if (!now.known()) return;
     ++frames_;
-    if (const Tensor kinetic = kinetic_of(frame); kinetic.allFinite()) {
-      kinetic_ += kinetic / window.content;
-      kinetic_pressure_.add(kinetic.trace() / (window.content * info_.box.dimension));
+    of_frames_.add_kinetic(frame, now);
+    if (!info_.columns.contact_forces) return;
+    const double weight = weight_of(frame);
+    of_frames_.add_contacts(frame, now, weight);
+    if (frame.force_mean.known()) {
+      over_time_.add_contacts(frame, frame.force_mean, weight);
+      over_time_.add_kinetic(frame, frame.force_mean);
     }
+    const BedWindow window = stress_window(frame, info_.box);
+    const double per_area = (window.high.z() - window.low.z()) / window.content,
+                 plate = plate_height(info_, frame).value_or(info_.box.lower.z());
+    for (const ContactForce& c : frame.contact_forces)
+      add_to_slabs(frame.position[static_cast<std::size_t>(c.i)].z() - plate, branch_vector(c, info_),
+                   c.force(), per_area);
   }
 
   [[nodiscard]] std::vector<Result> results() const override {
-    const std::string none = info_.columns.contact_forces
-                                 ? "no frame has a bead"
-                                 : "the trajectory stores no contact forces (simulate --contacts)";
+    const std::string no_bead = "no frame has a bead",
+                      none = info_.columns.contact_forces
+                                 ? no_bead
+                                 : "the trajectory stores no contact forces (simulate --contacts)",
+                      still = info_.columns.velocity ? no_bead : "the trajectory has no velocities";
     const bool planar = info_.box.dimension == 2;
     const std::string unit = planar ? "m g/sigma" : "m g/sigma^2";
     const std::string volume =
         "positive in compression; volume of the bed between the 0.5 and 99.5 "
-        "percentiles of the centres and half a diameter beyond";
-    const auto scalar = [&](const char* name, const SeriesAverage& series, const char* what) {
-      return mean_of(
-          series,
+        "percentiles of the centres and half a diameter beyond; " +
+        mean_over();
+    const Means& means = best();
+    const auto scalar = [&](const char* name, const CycleAverage& series, const char* what,
+                            const std::string& why_absent) {
+      return judged(mean_of(
+          series.average(),
           {.name = name,
            .unit = unit,
-           .n_of = "frames",
+           .n_of = series.of_what(),
            .convention = fmt::format("trace over {} of the {}; {}", info_.box.dimension, what, volume),
            .source = kSource},
-          none);
+          why_absent));
     };
     std::vector<Result> all = {
-        tensor("stress", contact_, frames_, unit, "virial of the contacts; " + volume, none),
-        tensor("stress_kinetic", kinetic_, kinetic_pressure_.n(), unit,
-               "m v'v' relative to the mean velocity of the frame; " + volume, none),
-        scalar("pressure", pressure_, "virial of the contacts"),
-        scalar("pressure_kinetic", kinetic_pressure_, "kinetic stress")};
+        tensor("stress", means.stress, unit, "virial of the contacts; " + volume, none),
+        tensor("stress_kinetic", means.kinetic, unit,
+               "m v'v' relative to the mean velocity of each instant; " + volume, still),
+        scalar("pressure", means.pressure, "virial of the contacts", none),
+        scalar("pressure_kinetic", means.kinetic_pressure, "kinetic stress", still)};
     std::vector<double> xx, zz, z;
     for (const auto& [k, slab] : slabs_) {
       xx.push_back(slab.xx / static_cast<double>(frames_));
@@ -105,25 +150,14 @@ class Stress : public Observable {
           {.name = name, .unit = of_unit, .n_of = "slabs", .convention = convention, .source = kSource},
           empty);
     };
-    all.push_back(array("stress_xx_z", xx, unit, "branch vectors cut at the slabs; mean over all frames"));
-    all.push_back(array("stress_zz_z", zz, unit, "branch vectors cut at the slabs; mean over all frames"));
+    const std::string cut = "branch vectors cut at the slabs; mean over all frames" + aliasing_note(info_);
+    all.push_back(array("stress_xx_z", xx, unit, cut));
+    all.push_back(array("stress_zz_z", zz, unit, cut));
     all.push_back(array("stress_z", z, "sigma",
                         period_ > 0
                             ? fmt::format("centres of {} slabs above the lower border of the period", period_)
                             : "centres of slabs of thickness sigma above the plate"));
-    std::vector<double> walls;
-    for (const double sum : wall_sums_) walls.push_back(sum / static_cast<double>(frames_));
-    all.push_back(
-        frames_ == 0 || walls.empty()
-            ? absent_result("wall_force", frames_ == 0 ? none : "the cell has no walls", kSource)
-            : array_of(walls,
-                       {.name = "wall_force",
-                        .unit = "m g",
-                        .n_of = "walls",
-                        .convention = fmt::format("normal force of all beads, mean over all frames; {}",
-                                                  fmt::join(info_.walls, ", ")),
-                        .source = kSource},
-                       none));
+    for (Result& r : wall_results(none)) all.push_back(std::move(r));
     return all;
   }
 
@@ -148,51 +182,91 @@ class Stress : public Observable {
     }
   }
 
-  /// Sum of m v' v'; NaN without velocities.
-  [[nodiscard]] Tensor kinetic_of(const Frame& frame) const {
-    Tensor sum = Tensor::Zero();
-    Vec3 momentum = Vec3::Zero();
+  /// Whether means over time are available; otherwise the means are over frames.
+  [[nodiscard]] bool over_time() const { return over_time_.pressure.by_cycles(); }
+  [[nodiscard]] const Means& best() const { return over_time() ? over_time_ : of_frames_; }
+  [[nodiscard]] std::string mean_over() const {
+    return over_time() ? fmt::format("mean over time, {} samples per cycle", info_.samples_per_cycle / 2)
+                       : "mean over all frames";
+  }
+  /// A mean over frames does not keep an interval that says nothing of its aliasing.
+  [[nodiscard]] Result judged(Result r) const { return over_time() ? r : over_frames(std::move(r), info_); }
+
+  /// Weight of the beads present, m g; 0 without gravity.
+  [[nodiscard]] double weight_of(const Frame& frame) const {
     double mass = 0;
-    const auto each = [&](auto&& visit) {
-      for (std::size_t i = 0; i < frame.velocity.size(); ++i)
-        if (frame.present(i) && frame.velocity[i].allFinite())
-          visit(mass_of(info_.mass, i), frame.velocity[i]);
-    };
-    each([&](double m, const Vec3& v) { momentum += m * v, mass += m; });
-    if (!(mass > 0)) return Tensor::Constant(std::numeric_limits<double>::quiet_NaN());
-    each([&](double m, const Vec3& v) {
-      const Vec3 off = v - momentum / mass;
-      sum += m * off * off.transpose();
-    });
-    return sum;
+    for (std::size_t i = 0; i < frame.position.size(); ++i)
+      if (frame.present(i)) mass += mass_of(info_.mass, i);
+    return mass * gravity_of(info_) * (info_.drive ? info_.drive->downward_share : 1);
   }
 
-  [[nodiscard]] Result tensor(const char* name, const Tensor& sum, std::size_t frames,
+  [[nodiscard]] Result tensor(const char* name, const std::vector<CycleAverage>& components,
                               const std::string& unit, const std::string& convention,
                               const std::string& none) const {
-    if (frames == 0) return absent_result(name, none, kSource);
+    const SeriesAverage& first = components.front().average();
+    if (first.n() == 0) return absent_result(name, none, kSource);
     Result r{.name = name,
              .unit = unit,
-             .n = frames,
-             .n_of = "frames",
+             .n = first.n(),
+             .n_of = components.front().of_what(),
              .no_interval = "pressure and pressure_kinetic have one",
              .convention = convention,
              .source = kSource};
     const std::vector<int> axes = info_.box.dimension == 2 ? std::vector{0, 2} : std::vector{0, 1, 2};
     for (const int a : axes)
-      for (const int b : axes) r.values.push_back(sum(a, b) / static_cast<double>(frames));
+      for (const int b : axes)
+        r.values.push_back(components[static_cast<std::size_t>(3 * a + b)].average().mean());
     r.shape = {axes.size(), axes.size()};
-    return r;
+    return judged(std::move(r));
+  }
+
+  /// wall_force with the ends of its intervals, and wall_support.
+  [[nodiscard]] std::vector<Result> wall_results(const std::string& none) const {
+    const Means& means = best();
+    if (means.pressure.average().n() == 0 || means.walls.empty()) {
+      const std::string why =
+          means.walls.empty() && info_.columns.contact_forces ? "the cell has no walls" : none;
+      std::vector<Result> absent;
+      for (const char* name : {"wall_force", "wall_force_low", "wall_force_high", "wall_support"})
+        absent.push_back(absent_result(name, why, kSource));
+      return absent;
+    }
+    const std::string of_what = means.pressure.of_what();
+    std::vector<SeriesAverage> walls;
+    for (const CycleAverage& w : means.walls) walls.push_back(w.average());
+    const SeriesAverage& support = means.support.average();
+    std::vector<Result> all = array_with_interval(
+        walls,
+        {.name = "wall_force",
+         .unit = "m g",
+         .n_of = "walls",
+         .convention = fmt::format(
+             "normal force of all beads, {}; {}{}", mean_over(), fmt::join(info_.walls, ", "),
+             support.n() == 0 ? std::string()
+                              : fmt::format("; the walls carry {:.3g} of the weight", support.mean())),
+         .source = kSource},
+        of_what, none);
+    all[0] = judged(std::move(all[0]));
+    if (!over_time() && frames_may_alias(info_))
+      for (std::size_t k : {1, 2}) all[k] = absent_result(all[k].name, all[0].no_interval, kSource);
+    all.push_back(
+        judged(mean_of(support,
+                       {.name = "wall_support",
+                        .unit = "1",
+                        .n_of = means.support.of_what(),
+                        .convention = "vertical force of all walls on the beads over their weight, " +
+                                      mean_over() + "; 1 in a steady state without drag of the plates",
+                        .source = "momentum balance"},
+                       "there is no gravity")));
+    return all;
   }
 
   const TrajectoryInfo& info_;
   std::size_t frames_ = 0;
-  Tensor contact_ = Tensor::Zero(), kinetic_ = Tensor::Zero();
-  SeriesAverage pressure_, kinetic_pressure_;
+  Means of_frames_, over_time_;
   std::map<std::int64_t, Slab> slabs_;
   std::int64_t period_ = 0;  // slabs of a period along z; 0 if there is none
   double thickness_ = kStressSlab;
-  std::vector<double> wall_sums_;
 };
 
 }  // namespace

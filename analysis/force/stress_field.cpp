@@ -7,7 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/force/branch_vector.hpp"
+#include "analysis/force/frames_of_landings.hpp"
+#include "trajectory/branch_vector.hpp"
 #include "trajectory/plate.hpp"
 
 namespace twincell::analysis {
@@ -68,8 +69,8 @@ class StressField : public Observable {
         .n = frames_,
         .n_of = "frames",
         .convention = fmt::format("Gaussian of width {:g} sigma at points {:.4g} sigma apart; smaller "
-                                  "within two widths of a wall and of the surface",
-                                  kCoarseWidth, cell_),
+                                  "within two widths of a wall and of the surface; mean over frames{}",
+                                  kCoarseWidth, cell_, aliasing_note(info_)),
         .source = kSource};
     const double per = 1 / (static_cast<double>(frames_) * depth_);
     for (std::size_t k = 0; k < rows_ * columns_; ++k)

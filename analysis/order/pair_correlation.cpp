@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/neighbours/bed_window.hpp"
 #include "analysis/observable/array_with_interval.hpp"
 #include "core/constants.hpp"
+#include "trajectory/bed_window.hpp"
 
 namespace twincell::analysis {
 namespace {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
-#include "analysis/neighbours/bed_window.hpp"
 #include "analysis/observable/array_with_interval.hpp"
+#include "trajectory/bed_window.hpp"
 
 namespace twincell::analysis {
 namespace {

@@ -124,7 +124,36 @@ struct Plain {
   std::vector<std::int64_t> segment_frames;
   std::string segment_digests;    ///< one per line
   std::vector<Vec3> temperature;  ///< all, coarse
+  std::vector<double> forces;     ///< RunState::forces_sum; empty if unknown
 };
+
+/// Numbers of the forces that do not belong to a wall, and those of each wall.
+constexpr std::size_t kOfTheBed = 2 * 9 + 3, kOfAWall = 4;
+
+std::vector<double> numbers_of(const BedForces& f) {
+  if (!f.known()) return {};
+  std::vector<double> all(f.stress.data(), f.stress.data() + 9);
+  all.insert(all.end(), f.kinetic.data(), f.kinetic.data() + 9);
+  all.insert(all.end(), {f.in_contact, f.normal_force, f.tangential_force});
+  for (std::size_t w = 0; w < f.wall_force.size(); ++w) {
+    const Vec3& v = f.wall_force[w];
+    all.insert(all.end(), {f.wall_normal_force[w], v.x(), v.y(), v.z()});
+  }
+  return all;
+}
+
+BedForces forces_of(const std::vector<double>& all) {
+  if (all.empty()) return {};
+  BedForces f;
+  std::copy_n(all.data(), 9, f.stress.data());
+  std::copy_n(all.data() + 9, 9, f.kinetic.data());
+  f.in_contact = all[18], f.normal_force = all[19], f.tangential_force = all[20];
+  for (std::size_t at = kOfTheBed; at < all.size(); at += kOfAWall) {
+    f.wall_normal_force.push_back(all[at]);
+    f.wall_force.emplace_back(all[at + 1], all[at + 2], all[at + 3]);
+  }
+  return f;
+}
 
 template <class Direction, class C, class P>
 void pass(Direction& a, C& c, P& plain) {
@@ -152,6 +181,7 @@ void pass(Direction& a, C& c, P& plain) {
   a.number("touching", s.touching);
   a.rows("temperature", plain.temperature);
   a.number("temperature_steps", s.temperature.steps);
+  a.list("forces_sum", plain.forces);
 }
 
 Plain plain_of(const Checkpoint& c) {
@@ -161,7 +191,8 @@ Plain plain_of(const Checkpoint& c) {
           tables_of(c.state.contacts),
           {},
           {},
-          {c.state.temperature.all, c.state.temperature.coarse}};
+          {c.state.temperature.all, c.state.temperature.coarse},
+          numbers_of(c.state.forces_sum)};
   for (const Segment& s : c.segments) {
     p.segment_frames.push_back(s.frames);
     p.segment_digests += s.sha256 + "\n";
@@ -185,7 +216,9 @@ bool agree(const Plain& p, const Checkpoint& c) {
   return frames && digests == p.segment_frames.size() && p.contacts.pairs.size() % 2 == 0 &&
          (contacts == 0 ? p.contacts.values.empty() : p.contacts.values.size() % contacts == 0) &&
          of_each(c.state.forces.size()) && of_each(c.state.rim_speeds.size()) &&
-         of_each(c.state.tracer.size()) && (p.temperature.empty() || p.temperature.size() == 2);
+         of_each(c.state.tracer.size()) && (p.temperature.empty() || p.temperature.size() == 2) &&
+         (p.forces.empty() ||
+          (p.forces.size() >= kOfTheBed && (p.forces.size() - kOfTheBed) % kOfAWall == 0));
 }
 
 void take(const Plain& p, Checkpoint& c) {
@@ -194,6 +227,7 @@ void take(const Plain& p, Checkpoint& c) {
   c.state.settled.reached = p.reached != 0;
   if (p.temperature.size() == 2)
     c.state.temperature.all = p.temperature[0], c.state.temperature.coarse = p.temperature[1];
+  c.state.forces_sum = forces_of(p.forces);
   const std::size_t contacts = p.contacts.pairs.size() / 2;
   const std::size_t each = contacts == 0 ? 0 : p.contacts.values.size() / contacts;
   for (std::size_t k = 0; k < contacts; ++k) {

@@ -12,7 +12,7 @@
 namespace twincell::sim {
 
 /// Version of the state file; files of any other version are refused.
-inline constexpr int kCheckpointVersion = 3;
+inline constexpr int kCheckpointVersion = 4;
 
 /// A finished file of frames that belongs to the state.
 struct Segment {

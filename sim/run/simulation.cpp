@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "sim/run/contact_forces.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/scene/make_plan.hpp"
 #include "sim/scene/plate_motion.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "sim/system/cell_grid.hpp"
+#include "trajectory/bed_forces.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 #include "trajectory/temperature.hpp"
 
@@ -196,7 +196,8 @@ Simulation::Simulation(Scene scene, RunState state, SolverKind kind, int threads
       settled_(state.settled),
       looked_at_(state.looked_at),
       touching_(state.touching),
-      temperature_(state.temperature) {
+      temperature_(state.temperature),
+      forces_sum_(std::move(state.forces_sum)) {
   GuardLimits limits = guard_limits(plan_);
   // A height that the scene sets without a lid is a limit; a height chosen by the program only keeps the box
   // of the file finite.
@@ -302,6 +303,7 @@ RunState Simulation::state() const {
   state.looked_at = looked_at_;
   state.touching = touching_;
   state.temperature = temperature_;
+  state.forces_sum = forces_sum_;
   return state;
 }
 
@@ -318,6 +320,7 @@ TrajectoryInfo Simulation::trajectory_info() const {
   info.columns.time_mean = samples_per_phase() > 0;
   info.columns.contacts = plan_.stores_memory;
   info.columns.contact_forces = scene_.contacts;
+  info.columns.force_mean = scene_.contacts && info.columns.time_mean;
   if (scene_.contacts)
     for (const Wall& wall : system_.walls) info.walls.push_back(wall.name);
   info.samples_per_cycle = static_cast<int>(samples_per_phase()) * scene_.phases;
@@ -376,6 +379,10 @@ Frame Simulation::snapshot(std::int64_t cycle, int phase) const {
   if (index > 0 && temperature_.steps == step_of(index) - step_of(index - 1)) {
     const auto steps = static_cast<double>(temperature_.steps);
     frame.time_mean = {temperature_.all / steps, temperature_.coarse / steps};
+    if (forces_sum_.known()) {
+      frame.force_mean = BedForces::zero(system_.walls.size());
+      frame.force_mean.add(forces_sum_, 1 / steps);
+    }
   }
   return frame;
 }
@@ -415,13 +422,26 @@ std::int64_t Simulation::sample_at(std::int64_t j, std::int64_t interval) const 
 
 void Simulation::advance(const std::vector<std::int64_t>& pieces, const std::function<void()>& after,
                          StageTimes* times, std::string_view stage) {
-  if (times == nullptr) return solver_->advance_in_pieces(system_, pieces, after);
+  const auto go = [&] {
+    // A device computes all pieces before the first call of `after`, but a sample of the forces needs the
+    // springs of its own instant.
+    if (!scene_.contacts) return solver_->advance_in_pieces(system_, pieces, after);
+    for (const std::int64_t steps : pieces) solver_->advance_in_pieces(system_, {steps}, after);
+  };
+  if (times == nullptr) return go();
   Stage stepping(times, stage, "particle-steps");
   const double before = solver_->counters().bytes;
   const std::int64_t begin = system_.step;
-  solver_->advance_in_pieces(system_, pieces, after);
+  go();
   stepping.count(static_cast<double>(system_.beads.size()) * static_cast<double>(system_.step - begin),
                  solver_->counters().bytes - before);
+}
+
+BedForces Simulation::forces_now() {
+  sampled_.position.clear();
+  for (const Bead& b : system_.beads) sampled_.position.push_back(centre_of(b));
+  sampled_.contact_forces = contact_forces(plan_, system_, solver_->contacts(), near_);
+  return bed_forces(sampled_, of_samples_);
 }
 
 void Simulation::take_sample(std::int64_t j, std::int64_t interval) {
@@ -432,12 +452,18 @@ void Simulation::take_sample(std::int64_t j, std::int64_t interval) {
   temperature_.all += static_cast<double>(at - before) * t;
   if (j % 2 == 0) temperature_.coarse += static_cast<double>(at - sample_at(j - 2, interval)) * t;
   temperature_.steps += at - before;
+  // Forces cost much more than velocities: every second sample keeps them below a tenth of a run of 720
+  // beads.
+  if (!scene_.contacts || j % 2 != 0) return;
+  if (!forces_sum_.known()) forces_sum_ = BedForces::zero(system_.walls.size());
+  forces_sum_.add(forces_now(), static_cast<double>(at - sample_at(j - 2, interval)));
 }
 
 void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most, StageTimes* times) {
   settle(progress, times);
   if (!driven_) begin_drive(scene_, plan_, system_);
   driven_ = true;
+  if (scene_.contacts) of_samples_ = trajectory_info();
   const std::int64_t samples = samples_per_phase(), last = plan_.steps;
   std::int64_t handed_over = 0;
   while (system_.step < last) {
@@ -460,7 +486,7 @@ void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most
       touching_ += touching;
       looked_at_ += static_cast<std::int64_t>(system_.beads.size());
     }
-    if (into == 0) temperature_ = {};
+    if (into == 0) temperature_ = {}, forces_sum_ = {};
     const std::int64_t end = into + std::min(interval - into, steps_per_call(system_.beads.size()));
     // Samples are taken only in the interval before a frame that is written.
     const bool sampling = samples > 0 && (frame + 1) / scene_.phases >= plan_.cycles_before;

@@ -12,6 +12,7 @@
 
 #include "core/progress.hpp"
 #include "core/stage_times.hpp"
+#include "sim/run/contact_forces.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/scene/scene.hpp"
 #include "sim/start/start.hpp"
@@ -33,6 +34,9 @@ struct TemperatureSums {
   Vec3 all = Vec3::Zero(), coarse = Vec3::Zero();
   std::int64_t steps = 0;  ///< total weight
 };
+/// Weighted sum of the forces over every second one of these samples (Frame::force_mean), as
+/// TemperatureSums::coarse; unknown in a run that stores no contacts, and before the first sample.
+using ForceSums = BedForces;
 
 /// Everything that the rest of a run depends on, apart from its scene. A run resumed from it continues bit
 /// for bit.
@@ -50,6 +54,7 @@ struct RunState {
   std::vector<std::uint8_t> tracer;          ///< empty if not chosen yet
   std::int64_t looked_at = 0, touching = 0;  ///< bead records in frames so far, and those in contact
   TemperatureSums temperature;
+  ForceSums forces_sum;
 };
 
 /// The initial state of a scene: beads placed, no step done.
@@ -128,6 +133,8 @@ class Simulation {
   /// \param interval to the next frame, steps
   [[nodiscard]] std::int64_t sample_at(std::int64_t j, std::int64_t interval) const;
   void take_sample(std::int64_t j, std::int64_t interval);
+  /// Forces on the walls and stress at this instant.
+  [[nodiscard]] BedForces forces_now();
 
   Scene scene_;
   Plan plan_;
@@ -141,8 +148,11 @@ class Simulation {
   std::int64_t steps_done_ = 0;
   std::int64_t looked_at_ = 0, touching_ = 0;  ///< bead records in frames, and those in contact
   TemperatureSums temperature_;
+  ForceSums forces_sum_;
   std::vector<double> masses_;
-  Frame sampled_;  ///< velocities of a sample
+  Frame sampled_;              ///< velocities of a sample; with contacts also positions and forces
+  NearPairs near_;             ///< of the samples
+  TrajectoryInfo of_samples_;  ///< box, walls, radii and masses of these
 };
 
 }  // namespace twincell::sim

@@ -29,6 +29,7 @@ struct H5mdReader::Impl {
   h5::Handle file;
   h5::Series step, time, position, position_sigma, velocity, spin, id, plate_height, phase, cycle,
       temperature, temperature_coarse;
+  h5::Series wall_normal_force, wall_force, contact_stress, kinetic_stress, bead_contacts;
 
   [[noreturn]] void refuse(const std::string& key, const std::string& complaint) const {
     throw InputError({path.string(), 0, 0, key}, complaint);
@@ -43,6 +44,7 @@ struct H5mdReader::Impl {
   void open();
   void open_columns(const std::string& group);
   void open_contacts();
+  void read_force_mean(std::size_t frame, BedForces& mean) const;
   std::vector<ContactMemory> contacts_of(std::size_t frame) const;
   std::vector<ContactForce> contact_forces_of(std::size_t frame) const;
   void read_box(const std::string& group);
@@ -166,7 +168,10 @@ void H5mdReader::Impl::open_columns(const std::string& group) {
     if (!h5::exists(file.get(), where)) return h5::Series();
     h5::Series s(file.get(), where);
     if (s && (s.size() != frames || s.record() != record))
-      refuse(where, record.empty() ? "one value per frame is needed." : "three values per frame are needed.");
+      refuse(where, record.empty() ? "one value per frame is needed."
+                    : record == std::vector<hsize_t>{3}
+                        ? "three values per frame are needed."
+                        : fmt::format("an array [{}] per frame is needed.", fmt::join(record, "][")));
     return s;
   };
   plate_height = observable("plate_height");
@@ -183,6 +188,15 @@ void H5mdReader::Impl::open_columns(const std::string& group) {
                   temperature && temperature_coarse};
 
   open_contacts();
+  if (const hsize_t walls = info.walls.size(); walls > 0) {
+    wall_normal_force = observable(h5md::kWallNormalForce, {walls});
+    wall_force = observable(h5md::kWallForce, {walls, 3});
+  }
+  contact_stress = observable(h5md::kContactStress, {3, 3});
+  kinetic_stress = observable(h5md::kKineticStress, {3, 3});
+  bead_contacts = observable(h5md::kBeadContacts, {3});
+  info.columns.force_mean = contact_stress && kinetic_stress && bead_contacts &&
+                            (info.walls.empty() || (wall_normal_force && wall_force));
 
   // Constants: one entry per bead.
   auto per_bead = [&]<class T>(const char* name, std::vector<T>& out) {
@@ -238,6 +252,23 @@ std::vector<ContactForce> H5mdReader::Impl::contact_forces_of(std::size_t frame)
     forces.push_back({pairs[2 * k], pairs[2 * k + 1], v[0], Vec3(v + 1), v[4], Vec3(v + 5)});
   }
   return forces;
+}
+
+void H5mdReader::Impl::read_force_mean(std::size_t frame, BedForces& mean) const {
+  mean = {};
+  if (!info.columns.force_mean) return;
+  double contacts_of_beads[3];
+  bead_contacts.read(frame, h5::native<double>(), contacts_of_beads);
+  mean.in_contact = contacts_of_beads[0];
+  mean.normal_force = contacts_of_beads[1];
+  mean.tangential_force = contacts_of_beads[2];
+  contact_stress.read(frame, h5::native<double>(), mean.stress.data());
+  kinetic_stress.read(frame, h5::native<double>(), mean.kinetic.data());
+  if (!wall_force || !mean.known()) return;
+  mean.wall_normal_force.resize(info.walls.size());
+  mean.wall_force.resize(info.walls.size());
+  wall_normal_force.read(frame, h5::native<double>(), mean.wall_normal_force.data());
+  wall_force.read(frame, h5::native<double>(), mean.wall_force.data());
 }
 
 void H5mdReader::Impl::read_box(const std::string& group) {
@@ -476,6 +507,7 @@ void H5mdReader::read(std::size_t index, Frame& frame) const {
       r.temperature.read(index, h5::native<double>(), frame.time_mean.temperature.data());
       r.temperature_coarse.read(index, h5::native<double>(), frame.time_mean.temperature_coarse.data());
     }
+    r.read_force_mean(index, frame.force_mean);
     frame.phase = -1;
     frame.cycle = -1;
     if (r.info.columns.phase) {

@@ -44,6 +44,7 @@ struct H5mdWriter::Impl {
   h5::Handle file;
   h5::Series step, time, position, position_sigma, edges, velocity, spin, id, plate_height, phase, cycle,
       temperature, temperature_coarse;
+  h5::Series wall_normal_force, wall_force, contact_stress, kinetic_stress, bead_contacts;
   h5::Series force, moment, rim_speed;
   ContactListWriter contacts, contact_forces;
   ConnectivityWriter connectivity;
@@ -57,6 +58,7 @@ struct H5mdWriter::Impl {
   void create_parameters();
   void append_contacts(const std::vector<ContactMemory>& memories);
   void append_contact_forces(const std::vector<ContactForce>& forces);
+  void append_force_mean(const BedForces& mean);
   void close();
 };
 
@@ -116,7 +118,9 @@ void H5mdWriter::Impl::create_particles() {
   if (!info.tracer.empty())
     h5::write_dataset(group.get(), "tracer", info.tracer.data(), {info.tracer.size()});
 
-  if (!info.columns.plate_height && !info.columns.phase && !info.columns.time_mean) return;
+  if (!info.columns.plate_height && !info.columns.phase && !info.columns.time_mean &&
+      !info.columns.force_mean)
+    return;
   const h5::Handle observables = h5::create_group(file.get(), "observables");
   if (info.columns.plate_height)
     plate_height = element(observables.get(), "plate_height", H5T_IEEE_F64LE, {});
@@ -128,6 +132,14 @@ void H5mdWriter::Impl::create_particles() {
     temperature = element(observables.get(), h5md::kTemperature, H5T_IEEE_F64LE, {3});
     temperature_coarse = element(observables.get(), h5md::kTemperatureCoarse, H5T_IEEE_F64LE, {3});
   }
+  if (!info.columns.force_mean) return;
+  if (const hsize_t walls = info.walls.size(); walls > 0) {  // HDF5 has no chunks of size 0
+    wall_normal_force = element(observables.get(), h5md::kWallNormalForce, H5T_IEEE_F64LE, {walls});
+    wall_force = element(observables.get(), h5md::kWallForce, H5T_IEEE_F64LE, {walls, 3});
+  }
+  contact_stress = element(observables.get(), h5md::kContactStress, H5T_IEEE_F64LE, {3, 3});
+  kinetic_stress = element(observables.get(), h5md::kKineticStress, H5T_IEEE_F64LE, {3, 3});
+  bead_contacts = element(observables.get(), h5md::kBeadContacts, H5T_IEEE_F64LE, {3});
 }
 
 void H5mdWriter::Impl::create_parameters() {
@@ -224,10 +236,44 @@ void H5mdWriter::Impl::append_contact_forces(const std::vector<ContactForce>& fo
   connectivity.append(pairs);
 }
 
+void H5mdWriter::Impl::append_force_mean(const BedForces& mean) {
+  if (wall_force) {
+    const std::size_t walls = info.walls.size();
+    std::vector<double> normal = mean.wall_normal_force;
+    std::vector<Vec3> vectors = mean.wall_force;
+    normal.resize(walls, BedForces::kUnknown);
+    vectors.resize(walls, Vec3::Constant(BedForces::kUnknown));
+    wall_normal_force.append(h5::native<double>(), normal.data());
+    wall_force.append(h5::native<double>(), vectors.data());
+  }
+  contact_stress.append(h5::native<double>(), mean.stress.data());
+  kinetic_stress.append(h5::native<double>(), mean.kinetic.data());
+  const double contacts_of_beads[] = {mean.in_contact, mean.normal_force, mean.tangential_force};
+  bead_contacts.append(h5::native<double>(), contacts_of_beads);
+}
+
 void H5mdWriter::Impl::close() {
-  for (h5::Series* s :
-       {&step, &time, &position, &position_sigma, &edges, &velocity, &spin, &id, &plate_height, &phase,
-        &cycle, &temperature, &temperature_coarse, &force, &moment, &rim_speed})
+  for (h5::Series* s : {&step,
+                        &time,
+                        &position,
+                        &position_sigma,
+                        &edges,
+                        &velocity,
+                        &spin,
+                        &id,
+                        &plate_height,
+                        &phase,
+                        &cycle,
+                        &temperature,
+                        &temperature_coarse,
+                        &wall_normal_force,
+                        &wall_force,
+                        &contact_stress,
+                        &kinetic_stress,
+                        &bead_contacts,
+                        &force,
+                        &moment,
+                        &rim_speed})
     *s = h5::Series();
   contacts = ContactListWriter();
   contact_forces = ContactListWriter();
@@ -286,6 +332,7 @@ void H5mdWriter::append(const Frame& frame) {
     w.temperature.append(h5::native<double>(), frame.time_mean.temperature.data());
     w.temperature_coarse.append(h5::native<double>(), frame.time_mean.temperature_coarse.data());
   }
+  if (w.contact_stress) w.append_force_mean(frame.force_mean);
   if (w.contact_forces) w.append_contact_forces(frame.contact_forces);
   if (w.contacts) {
     w.append_contacts(frame.contacts);

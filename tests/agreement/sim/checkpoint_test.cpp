@@ -20,6 +20,13 @@ bool same_bits(const std::vector<Row>& a, const std::vector<Row>& b) {
                                                            a.size() * sizeof(Row)) == 0);
 }
 
+bool same_bits(const BedForces& a, const BedForces& b) {
+  if (!a.known() || !b.known()) return a.known() == b.known();
+  return a.wall_force == b.wall_force && a.wall_normal_force == b.wall_normal_force && a.stress == b.stress &&
+         a.kinetic == b.kinetic && a.in_contact == b.in_contact && a.normal_force == b.normal_force &&
+         a.tangential_force == b.tangential_force;
+}
+
 bool same_bits(const RunState& a, const RunState& b) {
   bool same = a.driven == b.driven && a.step == b.step && a.quiet == b.quiet &&
               a.settled.time == b.settled.time && a.settled.energy_per_bead == b.settled.energy_per_bead &&
@@ -27,7 +34,7 @@ bool same_bits(const RunState& a, const RunState& b) {
               same_bits(a.forces, b.forces) && same_bits(a.rim_speeds, b.rim_speeds) &&
               same_bits(a.tracer, b.tracer) && a.temperature.all == b.temperature.all &&
               a.temperature.coarse == b.temperature.coarse && a.temperature.steps == b.temperature.steps &&
-              a.contacts.size() == b.contacts.size();
+              same_bits(a.forces_sum, b.forces_sum) && a.contacts.size() == b.contacts.size();
   for (std::size_t k = 0; same && k < a.contacts.size(); ++k)
     same = a.contacts[k].i == b.contacts[k].i && a.contacts[k].j == b.contacts[k].j &&
            same_bits(a.contacts[k].values, b.contacts[k].values);
@@ -124,6 +131,40 @@ TEST(Checkpoint, EventDrivenMotionRemembersItsContacts) {
   }
   EXPECT_GT(remembered, 10U);
   EXPECT_EQ(frames.frames().size(), 300U);
+}
+
+// A run that is resumed between two frames continues the sums over samples of its contact forces.
+TEST(Checkpoint, MeanForcesGoOnToTheBit) {
+  const TemporaryFolder folder;
+  const Scene scene = read_scene_text(kScene + kPlane + "[contact]\nk_n = 1e4\ngamma_n = 10.0\nk_t = 2e3\n",
+                                      "s", {"time.contacts=true", "time.phases=4", "beads.count=300"});
+  Simulation whole(scene, placed(scene));
+  Keeping driving(whole, 1);
+  MemoryTrajectory frames(whole.trajectory_info());
+  whole.settle();
+  whole.run(frames, driving);
+  std::size_t between = 0, compared = 0;
+  for (const RunState& state : driving.states) {
+    if (!state.forces_sum.known() || state.forces_sum.stress.norm() == 0 || between >= 6) continue;
+    ++between;
+    write_checkpoint(folder / "state.h5", {scene.resolved, "{}", "p", {{3, "abc"}}, state});
+    const RunState read = read_checkpoint(folder / "state.h5").state;
+    ASSERT_TRUE(same_bits(read, state));
+    for (const SolverKind kind : {SolverKind::scalar, SolverKind::best}) {
+      Simulation rest(scene, read, kind, 2);
+      MemoryTrajectory others(rest.trajectory_info());
+      rest.run(others);
+      for (std::size_t k = 1; k <= others.n_frames() && k < frames.n_frames(); ++k, ++compared) {
+        const BedForces &mean = others.frames()[others.n_frames() - k].force_mean,
+                        &truth = frames.frames()[frames.n_frames() - k].force_mean;
+        EXPECT_TRUE(truth.known());
+        EXPECT_TRUE(same_bits(mean, truth))
+            << "from step " << state.step << ", frame " << k << " from the end";
+      }
+    }
+  }
+  EXPECT_GE(between, 3U);
+  EXPECT_GE(compared, 12U);
 }
 
 TEST(Checkpoint, EveryLawGoesOnToTheBit) {

@@ -172,6 +172,8 @@ TEST(H5mdRanges, FramesThatCannotBeAreRefused) {
   const std::string file = folder / "t.h5";
   TrajectoryInfo info = sound();
   info.columns.identity = info.columns.position_sigma = info.columns.time_mean = true;
+  info.columns.contact_forces = info.columns.force_mean = true;
+  info.walls = {"bottom"};
   const auto put = [&](const std::function<void(Frame&)>& spoil, std::int64_t second_cycle = 1) {
     H5mdWriter writer(file, info);
     int written = 0;
@@ -183,6 +185,7 @@ TEST(H5mdRanges, FramesThatCannotBeAreRefused) {
       frame.position_sigma = {Vec3(0.1, std::nan(""), 0.1), Vec3(0.1, std::nan(""), 0.1)};
       frame.id = {0, 1};
       frame.time_mean = {Vec3(0.1, 0, 0.2), Vec3(0.1, 0, 0.1)};
+      frame.force_mean = BedForces::zero(1);
       frame.cycle = cycle;
       frame.phase = 4;
       if (written++ == 1) spoil(frame);
@@ -199,7 +202,16 @@ TEST(H5mdRanges, FramesThatCannotBeAreRefused) {
       {"the id 1 occurs twice", [](Frame& f) { f.id[0] = 1; }},
       {"the uncertainty of bead 1 is -1", [](Frame& f) { f.position_sigma[1].x() = -1; }},
       {"a temperature is -5", [](Frame& f) { f.time_mean.temperature.z() = -5; }},
-      {"a temperature is inf", [](Frame& f) { f.time_mean.temperature_coarse.x() = HUGE_VAL; }}};
+      {"a temperature is inf", [](Frame& f) { f.time_mean.temperature_coarse.x() = HUGE_VAL; }},
+      {"beads touch for a fraction 1.5 of the time", [](Frame& f) { f.force_mean.in_contact = 1.5; }},
+      {"the fraction of the time in which beads touch is infinite",
+       [](Frame& f) { f.force_mean.in_contact = HUGE_VAL; }},
+      {"its time means of forces and stress must be finite",
+       [](Frame& f) { f.force_mean.stress(0, 2) = HUGE_VAL; }},
+      {"its time means of forces and stress must be finite",
+       [](Frame& f) { f.force_mean.wall_force[0].z() = std::nan(""); }},
+      {"its mean kinetic stress and tangential force must not be negative",
+       [](Frame& f) { f.force_mean.kinetic(2, 2) = -1; }}};
   for (const auto& [what, spoil] : faults) {
     put(spoil);
     const Ran valid = run_program({"validate", file}), used = run_program({"analyze", file, "-q"});

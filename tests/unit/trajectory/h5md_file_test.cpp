@@ -72,6 +72,63 @@ RunConditions conditions_through_file(const TrajectoryInfo& info) {
   return H5mdReader(folder / "run.h5").info().conditions;
 }
 
+TEST(H5mdFile, TimeMeansOfForcesAreStored) {
+  const TemporaryFolder folder;
+  for (const std::size_t walls : {0, 2}) {
+    TrajectoryInfo info = experiment_info();
+    info.columns.contact_forces = info.columns.force_mean = true;
+    info.walls.assign(walls, "bottom");
+    std::vector<BedForces> means;
+    {
+      H5mdWriter writer(folder / "run.h5", info);
+      for (int f = 0; f < 3; ++f) {
+        Frame frame = frame_number(f);
+        if (f > 0) {
+          BedForces& m = frame.force_mean;
+          m = BedForces::zero(walls);
+          for (std::size_t w = 0; w < walls; ++w) {
+            m.wall_normal_force[w] = 3.0 * f + static_cast<double>(w);
+            m.wall_force[w] = Vec3(-0.5, f, static_cast<double>(w) / 3);
+          }
+          m.stress << 1, 2, 3, 4, 5, 6, 7, 8, 9.0 * f;
+          m.kinetic << 9, 2, 3, 4, 8, 6, 7, 8, 1.0 / f;
+          m.in_contact = 0.25 * f, m.normal_force = -1.0 / 3, m.tangential_force = 0.125;
+        }
+        means.push_back(frame.force_mean);
+        writer.append(frame);
+      }
+      writer.finish();
+    }
+    EXPECT_TRUE(validate_h5md(folder / "run.h5").empty());
+    const H5mdReader reader(folder / "run.h5");
+    EXPECT_TRUE(reader.info().columns.force_mean);
+    Frame frame;
+    for (const std::size_t f : {2, 0, 1}) {
+      reader.read(f, frame);
+      EXPECT_EQ(frame.force_mean.known(), f > 0);
+      EXPECT_EQ(frame.force_mean.wall_force, means[f].wall_force);
+      EXPECT_EQ(frame.force_mean.wall_normal_force, means[f].wall_normal_force);
+      if (f == 0) continue;
+      EXPECT_EQ(frame.force_mean.stress, means[f].stress);
+      EXPECT_EQ(frame.force_mean.kinetic, means[f].kinetic);
+      EXPECT_EQ(frame.force_mean.in_contact, means[f].in_contact);
+      EXPECT_EQ(frame.force_mean.normal_force, means[f].normal_force);
+      EXPECT_EQ(frame.force_mean.tangential_force, means[f].tangential_force);
+    }
+  }
+  // Files of earlier versions have contact forces without means.
+  TrajectoryInfo earlier = experiment_info();
+  earlier.columns.contact_forces = true;
+  H5mdWriter writer(folder / "earlier.h5", earlier);
+  writer.append(frame_number(1));
+  writer.finish();
+  const H5mdReader reader(folder / "earlier.h5");
+  EXPECT_FALSE(reader.info().columns.force_mean);
+  Frame frame;
+  reader.read(0, frame);
+  EXPECT_FALSE(frame.force_mean.known());
+}
+
 TEST(H5mdFile, TheHarmonicsOfTheDriveAreStored) {
   const TemporaryFolder folder;
   TrajectoryInfo info = experiment_info();

@@ -528,10 +528,13 @@ void cover_flights() {
 
 // --- contacts whose forces are correlated from frame to frame ---
 
-/// A column of beads on a floor. Their forces have a common factor that is correlated over the frames.
+constexpr std::int32_t kColumn = 6;
+
+/// A column of beads on a floor at rest. Their forces have a common factor that is correlated over the
+/// frames.
 MemoryTrajectory pressed(int cycles, Random& random) {
-  constexpr std::int32_t kColumn = 6;
   TrajectoryInfo info = info_of(kColumn, 1, Vec3(1, 1, 8));
+  info.drive->amplitude = 0;
   info.columns.velocity = info.columns.contact_forces = true;
   info.walls = {"bottom"};
   MemoryTrajectory out(info);
@@ -556,7 +559,47 @@ MemoryTrajectory pressed(int cycles, Random& random) {
   return out;
 }
 
+/// A driven bed with time means of its forces, which are skewed and correlated over the cycles, in four
+/// phases.
+MemoryTrajectory landing(int cycles, Random& random) {
+  constexpr int kPhases = 4;
+  TrajectoryInfo info = info_of(kColumn, kPhases, Vec3(1, 1, 8));
+  info.columns.velocity = info.columns.contact_forces = info.columns.force_mean = true;
+  info.samples_per_cycle = 400;
+  info.walls = {"bottom"};
+  MemoryTrajectory out(info);
+  Correlated breath(0.5, random);
+  std::gamma_distribution<double> gamma(10, 1.0 / 10);
+  for (int j = 0; j < cycles; ++j) {
+    const double common = 1 + 0.2 * breath.next();
+    for (int k = 0; k < kPhases; ++k) {
+      Frame frame = frame_of(info, j, k);
+      for (std::int32_t i = 0; i < kColumn; ++i) {
+        frame.position.emplace_back(0.5, 0, i + 0.5);
+        frame.velocity.emplace_back(normal(random), 0, normal(random));
+      }
+      BedForces& m = frame.force_mean = BedForces::zero(1);
+      const double force = kColumn * common * (k == 1 ? 4 * gamma(random) : 0);
+      m.wall_normal_force[0] = force;
+      m.wall_force[0] = Vec3(0, 0, -force);
+      m.stress.diagonal() = Vec3(0.2, 0, 1) * force * gamma(random);
+      m.kinetic.diagonal() = Vec3(1, 0, 1.5) * gamma(random) * common;
+      m.in_contact = k == 1 ? 0.5 + 0.1 * normal(random) : 0;
+      m.normal_force = 0.3 * force * gamma(random);
+      m.tangential_force = 0.2 * m.normal_force * gamma(random);
+      out.append(frame);
+    }
+  }
+  return out;
+}
+
 void cover_contact_forces() {
+  const Truth exact = {{"wall_support", 1},
+                       {"pressure", 0.6 * kColumn},
+                       {"pressure_kinetic", 1.25},
+                       {"contact_force", 0.3 * kColumn / 0.125},
+                       {"tangential_to_normal", 0.2}};
+  cover("means over time of forces", landing, 80, exact, {}, 18);
   const std::vector<std::string> names = {"contact_force", "tangential_to_normal",
                                           "mechanical_contact_number", "pressure", "pressure_kinetic"};
   cover("a pressed column", pressed, 80, long_run(pressed, 40000, names, {}, 16), {}, 17);
@@ -704,6 +747,8 @@ TEST(Coverage, EveryResultWithAnInterval) {
                                          "stress_zz_z",
                                          "stress_z",
                                          "wall_force",
+                                         "wall_force_low",
+                                         "wall_force_high",
                                          "stress_field",
                                          "stress_field_x",
                                          "stress_field_z",

@@ -229,10 +229,84 @@ TEST(ContactForce, DistributionIsThatOfTheForces) {
   validate({"V5.25", "mean of exponential forces", 5, 0.06, "closed form"}, values_of(t, "contact_force")[0]);
 }
 
+// The kinetic stress needs velocities only.
+TEST(Stress, KineticPartNeedsNoContacts) {
+  MemoryTrajectory t = empty(2, Vec3(8, 1, 4), true);
+  add(t, {Vec3(1, 0, 1), Vec3(2, 0, 1)}, {Vec3(4, 0, 2), Vec3(-4, 0, -2)});
+  validate({"V5.24", "kinetic pressure of two beads without contact forces", (16.0 + 4) / 32, 1e-12, "N T/V"},
+           values_of(t, "pressure_kinetic")[0]);
+  EXPECT_NEAR(values_of(t, "stress_kinetic")[1], 16.0 / 32, 1e-12);
+}
+
+// Frames whose forces are twice those of the time means.
+TEST(Stress, UsesStoredTimeMeans) {
+  MemoryTrajectory t = empty(2, Vec3(4, 1, 4), false);
+  t.info().columns.contact_forces = t.info().columns.force_mean = true;
+  t.info().samples_per_cycle = 400;
+  t.info().walls = {"bottom"};
+  t.info().drive = Drive{.amplitude = 2, .omega = 1};
+  add(t, {Vec3(1, 0, 0.5), Vec3(2, 0, 0.5)});
+  Frame frame = t.frames().front();
+  MemoryTrajectory with(t.info()), without(t.info());
+  for (int f = 0; f < 61; ++f) {
+    frame.step = frame.cycle = f;
+    frame.time = f;
+    // Cycles 1 to 60 scatter about 1 in pairs that cancel.
+    const int pair = (f - 1) / 2;
+    const double off = 0.1 + 0.4 * std::fmod(0.618 * pair, 1.0);
+    const double swing = (f % 2 == 0) == (pair * 7 % 5 < 2) ? 1 + off : 1 - off;
+    frame.contact_forces = {{0, -1, 0, Vec3::UnitZ(), 4, Vec3::Zero()},
+                            {0, 1, 0, -Vec3::UnitX(), 6, Vec3(0, 0, 3)}};
+    frame.force_mean = {};
+    without.append(frame);
+    if (f > 0) {
+      BedForces& m = frame.force_mean = BedForces::zero(1);
+      m.wall_normal_force = {2 * swing};
+      m.wall_force = {Vec3(0, 0, -2 * swing)};
+      m.stress.diagonal() = Vec3(3, 0, 5) * swing;
+      m.kinetic.diagonal() = Vec3(1, 0, 2) * swing;
+      m.in_contact = 0.5 * swing, m.normal_force = 1.5 * swing, m.tangential_force = 0.6 * swing;
+    }
+    with.append(frame);
+  }
+  const auto of = [](const MemoryTrajectory& which, const std::string& name) {
+    return analysis::find_result(analysis::analyze(which, {.only = {name}}), name);
+  };
+  for (const auto& [name, value] : {std::pair<std::string, double>{"pressure", 4},
+                                    {"pressure_kinetic", 1.5},
+                                    {"wall_support", 1},
+                                    {"contact_force", 3},
+                                    {"tangential_to_normal", 0.4}}) {
+    const analysis::Result r = of(with, name);
+    EXPECT_NEAR(r.value(), value, 1e-12) << name;
+    EXPECT_EQ(r.n, 60U) << name;
+    ASSERT_TRUE(r.interval) << name << ": " << r.no_interval;
+    EXPECT_LE(r.interval->low, value + 1e-9) << name;
+    EXPECT_GE(r.interval->high, value - 1e-9) << name;
+    EXPECT_NE(r.convention.find("time"), std::string::npos) << r.convention;
+  }
+  EXPECT_NEAR(of(with, "wall_force").values.at(0), 2, 1e-12);
+  EXPECT_LT(of(with, "wall_force_low").values.at(0), 2);
+  EXPECT_GT(of(with, "wall_force_high").values.at(0), 2);
+  EXPECT_NEAR(of(with, "stress").values.at(3), 5, 1e-12);
+  // Of the frames alone: other values, no interval, and the reason.
+  EXPECT_NEAR(of(without, "wall_force").values.at(0), 4, 1e-12);
+  EXPECT_NEAR(of(without, "wall_support").value(), 2, 1e-12);
+  EXPECT_NEAR(of(without, "contact_force").value(), 6, 1e-12);
+  for (const char* name : {"pressure", "pressure_kinetic", "wall_support", "contact_force",
+                           "tangential_to_normal", "wall_force"}) {
+    const analysis::Result r = of(without, name);
+    EXPECT_FALSE(r.interval) << name;
+    EXPECT_NE(r.no_interval.find("--contacts"), std::string::npos) << name;
+    EXPECT_NE(r.convention.find("miss the landings"), std::string::npos) << name;
+  }
+  EXPECT_NE(of(without, "wall_force_low").absent.find("--contacts"), std::string::npos);
+}
+
 TEST(ContactForce, IsAbsentWithoutStoredContacts) {
   MemoryTrajectory t = empty(2, Vec3(8, 1, 4), true);
   add(t, {Vec3(1, 0, 1), Vec3(2, 0, 1)});
-  for (const char* name : {"stress", "pressure", "wall_force", "stress_zz_z", "contact_force",
+  for (const char* name : {"stress", "pressure", "wall_force", "wall_support", "stress_zz_z", "contact_force",
                            "contact_force_density", "mechanical_contact_number"}) {
     analysis::AnalysisOptions options;
     options.only = {name};

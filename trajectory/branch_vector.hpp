@@ -4,7 +4,7 @@
 
 #include "trajectory/trajectory.hpp"
 
-namespace twincell::analysis {
+namespace twincell {
 
 /// From the centre of j to that of i, (R_i + R_j - overlap) n; or from the wall to the centre of i,
 /// (R_i - overlap) n; sigma. Radii as radius_of() gives them.
@@ -15,4 +15,4 @@ inline Vec3 branch_vector(const ContactForce& c, const TrajectoryInfo& info) {
   return (radius(c.i) + (c.j >= 0 ? radius(c.j) : 0) - c.overlap) * c.normal;
 }
 
-}  // namespace twincell::analysis
+}  // namespace twincell

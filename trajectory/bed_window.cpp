@@ -1,9 +1,9 @@
-#include "analysis/neighbours/bed_window.hpp"
+#include "trajectory/bed_window.hpp"
 
 #include <algorithm>
 #include <limits>
 
-namespace twincell::analysis {
+namespace twincell {
 
 double BedWindow::depth(const Vec3& r) const {
   double nearest = std::numeric_limits<double>::infinity();
@@ -43,4 +43,4 @@ std::vector<Vec3> present_centres(const Frame& frame) {
   return centres;
 }
 
-}  // namespace twincell::analysis
+}  // namespace twincell

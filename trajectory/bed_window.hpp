@@ -7,7 +7,7 @@
 
 #include "trajectory/trajectory.hpp"
 
-namespace twincell::analysis {
+namespace twincell {
 
 /// The bed ends at walls, at the plate and at its surface. Along an axis without period, the window lies
 /// between the 0.5 and the 99.5 percentile of the centres, so that a single bead that flies does not move it,
@@ -30,4 +30,4 @@ BedWindow bed_window(const std::vector<Vec3>& centres, const Box& box, double ma
 /// Centres of the beads that are present in a frame and have finite coordinates.
 std::vector<Vec3> present_centres(const Frame& frame);
 
-}  // namespace twincell::analysis
+}  // namespace twincell
