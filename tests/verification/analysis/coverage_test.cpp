@@ -569,7 +569,7 @@ MemoryTrajectory landing(int cycles, Random& random) {
   info.walls = {"bottom"};
   MemoryTrajectory out(info);
   Correlated breath(0.5, random);
-  std::gamma_distribution<double> gamma(10, 1.0 / 10);
+  std::gamma_distribution<double> gamma(20, 1.0 / 20);
   for (int j = 0; j < cycles; ++j) {
     const double common = 1 + 0.2 * breath.next();
     for (int k = 0; k < kPhases; ++k) {

@@ -265,7 +265,7 @@ TEST(Stress, UsesStoredTimeMeans) {
       m.wall_force = {Vec3(0, 0, -2 * swing)};
       m.stress.diagonal() = Vec3(3, 0, 5) * swing;
       m.kinetic.diagonal() = Vec3(1, 0, 2) * swing;
-      m.in_contact = 0.5 * swing, m.normal_force = 1.5 * swing, m.tangential_force = 0.6 * swing;
+      m.in_contact = 0.5, m.normal_force = 1.5 * swing, m.tangential_force = 0.6;
     }
     with.append(frame);
   }
