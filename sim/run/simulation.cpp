@@ -105,6 +105,20 @@ double largest_kick(const System& s, const std::vector<Bead>& before) {
 
 }  // namespace
 
+namespace {
+/// The step, above `from` and at most `to`, at which the forces of pair `pair` of the samples after frame
+/// `frame` are taken: at a random place that follows from these numbers alone. At fixed phases of the drive,
+/// contacts that last less than the time between samples would be hit or missed in every cycle alike.
+std::int64_t force_step(std::int64_t frame, std::int64_t pair, std::int64_t from, std::int64_t to) {
+  std::uint64_t h =
+      0x9E3779B97F4A7C15u * static_cast<std::uint64_t>(frame) + static_cast<std::uint64_t>(pair);
+  h = (h ^ (h >> 30)) * 0xBF58476D1CE4E5B9u;  // splitmix64
+  h = (h ^ (h >> 27)) * 0x94D049BB133111EBu;
+  h ^= h >> 31;
+  return from + 1 + static_cast<std::int64_t>(h % static_cast<std::uint64_t>(to - from));
+}
+}  // namespace
+
 std::int64_t steps_per_call(std::size_t beads) {
   // A call packs the beads and unpacks them again, and builds the inner list where it cannot go on from the
   // last call. A list lives for about 64 steps, so calls of that length cost little more than one long call.
@@ -439,7 +453,11 @@ void Simulation::advance(const std::vector<std::int64_t>& pieces, const std::fun
 
 BedForces Simulation::forces_now() {
   sampled_.position.clear();
-  for (const Bead& b : system_.beads) sampled_.position.push_back(centre_of(b));
+  sampled_.velocity.clear();
+  for (const Bead& b : system_.beads) {
+    sampled_.position.push_back(centre_of(b));
+    sampled_.velocity.emplace_back(b.vx, b.vy, b.vz);
+  }
   sampled_.contact_forces = contact_forces(plan_, system_, solver_->contacts(), near_);
   return bed_forces(sampled_, of_samples_);
 }
@@ -452,11 +470,6 @@ void Simulation::take_sample(std::int64_t j, std::int64_t interval) {
   temperature_.all += static_cast<double>(at - before) * t;
   if (j % 2 == 0) temperature_.coarse += static_cast<double>(at - sample_at(j - 2, interval)) * t;
   temperature_.steps += at - before;
-  // Forces cost much more than velocities: every second sample keeps them below a tenth of a run of 720
-  // beads.
-  if (!scene_.contacts || j % 2 != 0) return;
-  if (!forces_sum_.known()) forces_sum_ = BedForces::zero(system_.walls.size());
-  forces_sum_.add(forces_now(), static_cast<double>(at - sample_at(j - 2, interval)));
 }
 
 void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most, StageTimes* times) {
@@ -491,11 +504,23 @@ void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most
     // Samples are taken only in the interval before a frame that is written.
     const bool sampling = samples > 0 && (frame + 1) / scene_.phases >= plan_.cycles_before;
     std::int64_t next = sampling ? into * samples / interval + 1 : 0;
+    // Forces cost much more than velocities: one sample for two of these.
+    const bool of_forces = sampling && scene_.contacts;
+    const auto force_at = [&](std::int64_t pair) {
+      return force_step(frame, pair, sample_at(2 * pair - 2, interval), sample_at(2 * pair, interval));
+    };
+    std::int64_t next_pair = std::max<std::int64_t>(1, next / 2);
+    while (of_forces && 2 * next_pair <= samples && force_at(next_pair) <= into) ++next_pair;
     std::vector<std::int64_t> pieces;
     if (sampling)
-      for (std::int64_t at = into, k = next; at < end; ++k) {
-        pieces.push_back(std::min(end, sample_at(k, interval)) - at);
-        at += pieces.back();
+      for (std::int64_t at = into, k = next, pair = next_pair; at < end;) {
+        const bool more = of_forces && 2 * pair <= samples;
+        const std::int64_t sample = sample_at(k, interval), force = more ? force_at(pair) : end,
+                           stop = std::min({end, sample, force});
+        pieces.push_back(stop - at);
+        if (stop == sample) ++k;
+        if (more && stop == force) ++pair;
+        at = stop;
       }
     else
       pieces.push_back(end - into);
@@ -503,10 +528,21 @@ void Simulation::run(TrajectorySink& sink, Progress& progress, std::int64_t most
     advance(
         pieces,
         [&] {
-          if (!sampling || system_.step - begin != sample_at(next, interval)) return;
-          Stage sample(times, "samples", "samples");
-          take_sample(next++, interval);
-          sample.count(1);
+          const std::int64_t at = system_.step - begin;
+          if (sampling && at == sample_at(next, interval)) {
+            Stage sample(times, "samples", "samples");
+            take_sample(next++, interval);
+            sample.count(1);
+          }
+          if (of_forces && 2 * next_pair <= samples && at == force_at(next_pair)) {
+            Stage sample(times, "forces", "samples");
+            if (!forces_sum_.known()) forces_sum_ = BedForces::zero(system_.walls.size());
+            const std::int64_t weight =
+                sample_at(2 * next_pair, interval) - sample_at(2 * next_pair - 2, interval);
+            forces_sum_.add(forces_now(), static_cast<double>(weight));
+            sample.count(1);
+            ++next_pair;
+          }
         },
         times, "stepping");
     steps_done_ += end - into;

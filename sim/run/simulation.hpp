@@ -34,8 +34,8 @@ struct TemperatureSums {
   Vec3 all = Vec3::Zero(), coarse = Vec3::Zero();
   std::int64_t steps = 0;  ///< total weight
 };
-/// Weighted sum of the forces over every second one of these samples (Frame::force_mean), as
-/// TemperatureSums::coarse; unknown in a run that stores no contacts, and before the first sample.
+/// Weighted sum of the forces over samples at a random step in every pair of intervals between those of the
+/// temperature (Frame::force_mean); unknown in a run that stores no contacts, and before the first sample.
 using ForceSums = BedForces;
 
 /// Everything that the rest of a run depends on, apart from its scene. A run resumed from it continues bit
