@@ -89,9 +89,8 @@ struct TimeMean {
 };
 
 /// Forces on the walls and stress of a bed, at one instant (bed_forces.hpp) or averaged over the time since
-/// the previous frame. The means are at random steps between those of TimeMean: nearly all of the momentum
-/// that a bed takes from the plate passes while it lands, so that frames at a few phases per cycle would
-/// alias them.
+/// the previous frame. The means are over samples at random steps: nearly all of the momentum that a bed
+/// takes from the plate passes while it lands, so that frames at a few phases per cycle would alias them.
 struct BedForces {
   using Tensor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();

@@ -103,8 +103,8 @@ class Simulation {
   /// 0 first.
   /// \throws RunError if the run fails (the frames up to there have been appended), Interrupted
   /// \param most ends the call after this number of frames; the next call continues from there
-  /// \param times receives the times of the stages "stepping", "samples", "frames", "writing"; null: not
-  ///     timed
+  /// \param times receives the times of the stages "stepping", "samples", "forces", "frames", "writing";
+  ///     null: not timed
   void run(TrajectorySink& sink, Progress& progress = Progress::none(),
            std::int64_t most = std::numeric_limits<std::int64_t>::max(), StageTimes* times = nullptr);
   /// The present state. It is consistent whenever settle() and run() call progress.update: the frames of all
