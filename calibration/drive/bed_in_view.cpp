@@ -68,8 +68,21 @@ std::optional<Estimate> wall_of_bed(const BeadFrames& beads, double diameter, bo
     if (inside > 0.05 && inside <= 0.15) ++next;
   }
   if (touching < 1.5 * frames || touching < 2 * next) return std::nullopt;
+  // Beads that only come near the wall trail inwards; their median is inside by the asymmetry of the trail.
+  const auto at = [&](double share) {
+    const auto n = static_cast<double>(last - rims.begin()) - 1;
+    return rims[static_cast<std::size_t>(share * n)];
+  };
+  const double trail = std::max(0.0, (at(0.5) - at(0.9)) - (at(0.1) - at(0.5)));
+  // Rims that glare or shade are not at the surfaces that touch.
+  std::vector<double> radii;
+  for (const auto& frame : beads.frames)
+    for (const SizedBead& b : frame) radii.push_back(b.radius);
+  const double rim_error = upper_median(std::move(radii)) - 0.5 * diameter;
   const double mean = sum / touching, scatter = std::sqrt(std::max(0.0, squares / touching - mean * mean));
-  const double error = std::hypot(scatter / std::sqrt(touching / frames), kContactError * diameter);
+  const double error =
+      std::hypot(std::hypot(scatter / std::sqrt(touching / frames), kContactError * diameter),
+                 std::hypot(trail, rim_error));
   return Estimate{(right ? 1 : -1) * (place + mean), error};
 }
 

@@ -15,9 +15,12 @@ namespace twincell::calibration {
 /// The rims of a heap without a wall, or of a bed that the picture cuts, do not.
 ///
 /// Rims within 0.03 diameters of the place count as touching. There must be 1.5 of them per frame, and twice
-/// as many as between 0.05 and 0.15 diameters inside. The error is the scatter over the touching beads of one
-/// frame, and 0.003 diameters because beads need not touch.
-/// \param diameter of a bead
+/// as many as between 0.05 and 0.15 diameters inside. The error contains the scatter over the touching beads
+/// of one frame, 0.003 diameters because beads need not touch, what the rims within 0.1 diameters trail
+/// inwards (the distance of their median from the tenth inside less that from the tenth outside), and the
+/// difference of the median radius from half the diameter.
+///
+/// \param diameter of a bead: the distance of touching ones
 std::optional<Estimate> wall_of_bed(const BeadFrames& beads, double diameter, bool right);
 
 /// Motion of the plate as the bed shows it. Heights count upwards.

@@ -127,14 +127,22 @@ std::vector<Proposal> propose_all(const Prepared& image, const LocatorOptions& o
   return choose && !layers ? assign_sizes(image, all) : all;
 }
 
-/// Scales the radii so that a disc as large as the profile has the radius of the profile's rim.
-void stretch_to_rim(std::vector<Detection>& beads, const DiscProfile& profile) {
-  const double rim = profile.rim();
+/// Scales the radii so that a disc as large as the profile has the radius of the profile's rim. Discs of
+/// another size than the known one are rejected.
+void stretch_to_rim(Judged& judged, const DiscProfile& profile, bool size_known) {
+  const double of_known = size_known ? profile.rim_of_known() : 0,
+               rim = of_known > 0 ? of_known : profile.rim();
   if (!(rim > 0)) return;
-  for (Detection& b : beads) {
+  for (Detection& b : judged.beads) {
     b.radius *= rim / profile.radius_px;
     b.sigma_radius *= rim / profile.radius_px;
   }
+  if (!size_known || of_known > 0) return;
+  for (Detection& b : judged.beads) {
+    b.verdict = Verdict::wrong_radius;
+    judged.dropped.push_back(b);
+  }
+  judged.beads.clear();
 }
 
 double largest_radius(const LocatorOptions& options) {
@@ -200,7 +208,7 @@ LocatorStages locate_stages(const cv::Mat& grey, const LocatorOptions& options) 
     result.judged.dropped.insert(result.judged.dropped.end(), outliers.begin(), outliers.end());
   }
   if (options.rim_radii && refiner.model == DiscModel::shared_profile)
-    stretch_to_rim(result.judged.beads, result.refined.profile);
+    stretch_to_rim(result.judged, result.refined.profile, options.size_known);
   result.reports.push_back({"judge", watch.lap(), result.judged.beads.size()});
   return result;
 }

@@ -27,6 +27,9 @@ struct LocatorOptions {
   std::vector<double> other_diameters_px;
   /// diameter_px is the scale that the cell states; no size of the beads was stated.
   bool diameter_of_scale = false;
+  /// diameter_px was stated or measured: with DiscModel::shared_profile, discs whose common rim is clearly
+  /// that of another size (DiscProfile::rim_of_known) have the wrong radius.
+  bool size_known = false;
   bool polarity_known = true;  ///< preprocess.bright is given; false: determined from the first frame
   PreprocessOptions preprocess;
   FindOptions find;      ///< its radius is set from the diameters

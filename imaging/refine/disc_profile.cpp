@@ -45,6 +45,20 @@ double DiscProfile::rim() const {
   return shoulder(rim).value_or(rim);
 }
 
+double DiscProfile::rim_of_known() const {
+  const double out = rim();
+  if (std::abs(out - radius_px) <= kNear * radius_px) return out;
+  const auto begin = static_cast<std::size_t>((1 - kNear) * radius_px * kPerPixel),
+             end = static_cast<std::size_t>((1 + kNear) * radius_px * kPerPixel);
+  if (out > radius_px || end >= levels.size() ||
+      std::abs(static_cast<double>(levels[begin])) <= kShoulder * largest())
+    return 0;
+  const std::vector<float> fall = falls(begin);
+  const auto last = fall.begin() + static_cast<std::ptrdiff_t>(std::min(end - begin, fall.size()));
+  const auto most = static_cast<std::size_t>(std::max_element(fall.begin(), last) - fall.begin());
+  return (static_cast<double>(begin) + steepest_near(fall, most)) / kPerPixel;
+}
+
 double DiscProfile::outer_rim() const {
   const auto high = static_cast<float>(kRim * largest());
   if (high == 0) return 0;

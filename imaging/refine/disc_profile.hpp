@@ -20,6 +20,11 @@ struct DiscProfile {
   /// fifth of the largest |f|. The reflection on a steel ball is many times as bright as its body: if that
   /// place is more than a fifth of R inside of R, the steepest shoulder within a fifth of R counts instead.
   [[nodiscard]] double rim() const;
+  /// Radius of the rim of discs whose radius is known to about a fifth, px: rim() if it is within a fifth of
+  /// R. Otherwise, if |f| at 0.8 R is above a tenth of its largest value, the steepest fall between 0.8
+  /// and 1.2 R, where the discs end even if a highlight falls more steeply. 0: the discs clearly have another
+  /// size.
+  [[nodiscard]] double rim_of_known() const;
   /// The largest |f|, darkness.
   [[nodiscard]] double largest() const;
   /// Fraction of the sum of f^2 over the disc's area that a plain disc with this rim, at its best-fitting

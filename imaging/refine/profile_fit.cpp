@@ -117,13 +117,15 @@ class ProfileFit {
     std::vector<Term> terms(seen.size());
     std::vector<std::size_t> at(first.begin(), first.end());
     for (const Term& t : seen) terms[at[t.row]++] = t;
+    const cv::Mat1f spots = picture_of_spots();
     // Normal equations, with Huber weights once a profile is known.
     std::vector<Term> of_one;
     for (std::size_t row = 0; row < pixels.size(); ++row) {
       of_one.assign(terms.begin() + static_cast<std::ptrdiff_t>(first[row]),
                     terms.begin() + static_cast<std::ptrdiff_t>(first[row + 1]));
       of_one.push_back({row, last, 1});
-      const double d = static_cast<double>(image_.darkness(pixels[row]));
+      double d = static_cast<double>(image_.darkness(pixels[row]));
+      if (!spots.empty()) d -= static_cast<double>(spots(pixels[row]));
       double weight = 1;
       if (learnt_) {
         double now = 0;
@@ -231,6 +233,74 @@ class ProfileFit {
     return scores.empty() ? 0 : upper_median(std::move(scores));
   }
 
+  /// The vertex of the paraboloid through the values of a function at a point and at eight around it,
+  /// relative to the point, at most a step along x and y.
+  template <class Function>
+  static cv::Point2d vertex(const Function& of, const cv::Point2d& at, double step) {
+    double gx = 0, gy = 0, xx = 0, yy = 0, xy = 0;
+    for (const int i : {-1, 0, 1})
+      for (const int j : {-1, 0, 1}) {
+        const double v = of(at + cv::Point2d(i * step, j * step));
+        gx += i * v / 6, gy += j * v / 6, xy += i * j * v / 4;
+        xx += (i == 0 ? -2 : 1) * v / 3, yy += (j == 0 ? -2 : 1) * v / 3;
+      }
+    const double det = xx * yy - xy * xy;
+    if (!(det > 0 && xx > 0)) return {};
+    return {step * std::clamp((xy * gy - yy * gx) / det, -1.0, 1.0),
+            step * std::clamp((xy * gx - xx * gy) / det, -1.0, 1.0)};
+  }
+
+  /// Moves the centres of all discs by the same vector, to the middle of their rims, if a highlight beside
+  /// the middle attracted them. f is then that of a smeared rim, which the residuals at the rims show: they
+  /// are least where the rims are concentric. A compass search, for a smeared rim has no gradient to the
+  /// middle. Then the spot is learnt, so that no disc is drawn to it by more than the others.
+  void centre_at_rims() {
+    constexpr double kFirstStep = 0.125, kLastStep = 0.06;  // R
+    constexpr double kMinShift = 0.04, kMaxShift = 0.5;     // R: less is no highlight, more another disc
+    constexpr double kBetter = 0.75;                        // of the squares of the residuals at the rims
+    constexpr int kSpotRounds = 2, kSpotSweeps = 2;
+    std::vector<Detection> before = beads_;
+    const DiscProfile profile_before = shared_;
+    const auto squares_at = [&](const cv::Point2d& shift) {
+      for (std::size_t k = 0; k < beads_.size(); ++k)
+        beads_[k].x = before[k].x + shift.x, beads_[k].y = before[k].y + shift.y;
+      learn(kMinScore);
+      return squares_at_rims();
+    };
+    const double first = squares_at({});
+    double least = first;
+    cv::Point2d shift;
+    for (double step = kFirstStep * radius_; step > kLastStep * radius_; step *= 0.5)
+      for (bool moves = true; moves;) {
+        moves = false;
+        for (const cv::Point2d way : {cv::Point2d(0, 1), {0, -1}, {1, 0}, {-1, 0}}) {
+          const cv::Point2d next = shift + step * way;
+          if (cv::norm(next) > kMaxShift * radius_) continue;
+          const double squares = squares_at(next);
+          if (!(squares < least)) continue;
+          least = squares;
+          shift = next;
+          moves = true;
+        }
+      }
+    if (!(least < kBetter * first) || cv::norm(shift) < kMinShift * radius_) {
+      beads_ = before;
+      shared_ = profile_before;
+      render();
+      return;
+    }
+    const auto to_vertex = [&] { (void)squares_at(shift + vertex(squares_at, shift, kLastStep * radius_)); };
+    to_vertex();
+    shift = {};
+    for (int round = 0; round < kSpotRounds; ++round) {
+      learn_spot();
+      for (int k = 0; k < kSpotSweeps; ++k) sweep();
+      learn(kMinScore);
+      before = beads_;
+      to_vertex();
+    }
+  }
+
   Refined result(int sweeps) {
     const double rho = correlation();
     for (std::size_t k = 0; k < beads_.size(); ++k) {
@@ -328,7 +398,8 @@ class ProfileFit {
 
   void add(const Detection& b, double sign) {
     over(b, [&](int x, int y, double r) {
-      model_(y, x) += static_cast<float>(sign * b.darkness * level_at(shared_, r * radius_ / b.radius).value);
+      const double level = level_at(shared_, r * radius_ / b.radius).value + spot_at(b, x, y).value;
+      model_(y, x) += static_cast<float>(sign * b.darkness * level);
     });
   }
   void render() {
@@ -346,7 +417,10 @@ class ProfileFit {
       const double slope = b.darkness * f.slope * scale, far = std::max(r, 1e-6);
       const double t = static_cast<double>(model_(y, x)),
                    left = static_cast<double>(image_.darkness(y, x)) - t;
-      const Step j(-slope * (x - b.x) / far, -slope * (y - b.y) / far, -slope * r / b.radius, f.value);
+      const SpotLevel spot = spot_at(b, x, y);
+      const Step j(-slope * (x - b.x) / far - b.darkness * spot.along_x,
+                   -slope * (y - b.y) / far - b.darkness * spot.along_y, -slope * r / b.radius,
+                   f.value + spot.value);
       const double v = noise_.dark + noise_.light * std::clamp(1 - t, 0.0, 1.0);
       const double w = std::min(1.0, huber_ / std::max(1e-9, std::abs(left))) / v;
       a += w * j * j.transpose();
@@ -368,6 +442,88 @@ class ProfileFit {
     b.darkness = std::clamp(b.darkness + step[3], 0.0, 2.0);
     add(b, 1);
     return std::hypot(dx, dy);
+  }
+
+  /// Level and slopes of the spot of a disc at a pixel, darkness and darkness per px.
+  struct SpotLevel {
+    double value = 0, along_x = 0, along_y = 0;
+  };
+  [[nodiscard]] SpotLevel spot_at(const Detection& b, int x, int y) const {
+    if (spot_.empty()) return {};
+    const double u = (x - b.x) * DiscProfile::kPerPixel + spot_middle(),
+                 v = (y - b.y) * DiscProfile::kPerPixel + spot_middle();
+    if (!(u >= 0 && v >= 0)) return {};
+    const int i = static_cast<int>(u), j = static_cast<int>(v);
+    if (i + 1 >= spot_.cols || j + 1 >= spot_.rows) return {};
+    const double s = u - i, t = v - j, a = static_cast<double>(spot_(j, i)),
+                 right = static_cast<double>(spot_(j, i + 1)), below = static_cast<double>(spot_(j + 1, i)),
+                 both = static_cast<double>(spot_(j + 1, i + 1));
+    return {(1 - t) * ((1 - s) * a + s * right) + t * ((1 - s) * below + s * both),
+            DiscProfile::kPerPixel * ((1 - t) * (right - a) + t * (both - below)),
+            DiscProfile::kPerPixel * ((1 - s) * (below - a) + s * (both - right))};
+  }
+  [[nodiscard]] double spot_middle() const { return std::ceil(radius_ * DiscProfile::kPerPixel); }
+
+  /// The spots of all discs; empty without a spot.
+  [[nodiscard]] cv::Mat1f picture_of_spots() const {
+    if (spot_.empty()) return {};
+    cv::Mat1f picture = cv::Mat1f::zeros(model_.size());
+    for (const Detection& b : beads_)
+      over(b, [&](int x, int y, double) {
+        picture(y, x) += static_cast<float>(b.darkness * spot_at(b, x, y).value);
+      });
+    return picture;
+  }
+
+  /// Learns the spot: what the discs have in common inside their rims beside f.
+  void learn_spot() {
+    constexpr double kWhole = 0.75, kEnd = 0.9;  // R: where it begins to vanish, and has vanished
+    constexpr double kFew = 0.5;                 // discs in a cell at which it is half of the residual
+    const int side = 2 * static_cast<int>(spot_middle()) + 1;
+    cv::Mat1d sum = cv::Mat1d::zeros(side, side), weight = sum.clone();
+    for (const Detection& b : beads_) {
+      if (b.score < kMinScore) continue;
+      over(b, [&](int x, int y, double r) {
+        if (r >= kEnd * b.radius) return;
+        const double left = static_cast<double>(image_.darkness(y, x)) - static_cast<double>(model_(y, x)) +
+                            b.darkness * spot_at(b, x, y).value;
+        const double u = (x - b.x) * DiscProfile::kPerPixel + spot_middle(),
+                     v = (y - b.y) * DiscProfile::kPerPixel + spot_middle();
+        const int i = static_cast<int>(u), j = static_cast<int>(v);
+        if (u < 0 || v < 0 || i + 1 >= side || j + 1 >= side) return;
+        for (const int di : {0, 1})
+          for (const int dj : {0, 1}) {
+            const double share = (di == 0 ? 1 - (u - i) : u - i) * (dj == 0 ? 1 - (v - j) : v - j);
+            sum(j + dj, i + di) += share * b.darkness * left;
+            weight(j + dj, i + di) += share * b.darkness * b.darkness;
+          }
+      });
+    }
+    cv::Mat1f spot = cv::Mat1f::zeros(side, side);
+    for (int j = 0; j < side; ++j)
+      for (int i = 0; i < side; ++i) {
+        const double r = std::hypot(i - spot_middle(), j - spot_middle()) / DiscProfile::kPerPixel / radius_,
+                     kept = std::clamp((kEnd - r) / (kEnd - kWhole), 0.0, 1.0);
+        spot(j, i) = static_cast<float>(kept * sum(j, i) / (weight(j, i) + kFew));
+      }
+    spot_ = spot;
+    render();
+  }
+
+  /// Sum of the squares of the residuals at the rims, outside of any highlight.
+  [[nodiscard]] double squares_at_rims() const {
+    constexpr double kInner = 0.85;  // R
+    double squares = 0;
+    for (const Detection& b : beads_) {
+      if (b.score < kMinScore) continue;
+      over(b, [&](int x, int y, double r) {
+        if (r * radius_ < kInner * radius_ * b.radius) return;
+        const double left = std::clamp(
+            static_cast<double>(image_.darkness(y, x)) - static_cast<double>(model_(y, x)), -huber_, huber_);
+        squares += left * left;
+      });
+    }
+    return squares;
   }
 
   /// By what the correlation of the residuals enlarges the variances of the centres. Only discs that lie in
@@ -405,7 +561,8 @@ class ProfileFit {
         [&](int x, int y, double r) {
           const double left = std::clamp(
               static_cast<double>(image_.darkness(y, x)) - static_cast<double>(model_(y, x)), -bound, bound);
-          const double own = left + b.darkness * level_at(shared_, r * radius_ / b.radius).value;
+          const double own =
+              left + b.darkness * (level_at(shared_, r * radius_ / b.radius).value + spot_at(b, x, y).value);
           ++n, sum += own, squares += own * own, left_squares += left * left;
         },
         1.0);
@@ -420,6 +577,7 @@ class ProfileFit {
   DiscProfile shared_;
   bool learnt_ = false;
   cv::Mat1f model_;
+  cv::Mat1f spot_;   // of a disc beside f, kPerPixel values a px, its middle at the centre; empty: none
   cv::Mat1b taken_;  // pixels too close to a known disc for another centre
   std::vector<Detection> beads_, dropped_;
   std::vector<Normal> covariance_;
@@ -449,6 +607,7 @@ Refined refine_by_profile(const Prepared& image, const std::vector<Proposal>& pr
     if (round == 0) fit.add_missed();
   }
   if (!fit.empty()) fit.sweep();
+  if (!fit.empty()) fit.centre_at_rims();
   Refined refined = fit.result(sweeps);
   refined.profile = fit.profile();
   return refined;

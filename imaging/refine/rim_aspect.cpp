@@ -34,7 +34,9 @@ double weighted_median(Parts parts, Value&& of) {
 
 std::string Aspect::doubt() const {
   constexpr double kMinDeviation = 0.015, kMinSignificance = 4;  // of the ratio from 1; standard errors
+  constexpr double kAgrees = 0.5;  // least deviation of the spacing, in that of the rims
   if (!(std::abs(ratio - 1) > std::max(kMinDeviation, kMinSignificance * error))) return {};
+  if (of_spacing && (*of_spacing - 1) / (ratio - 1) < kAgrees) return {};
   return fmt::format(
       "the beads are {:.3f} +- {:.3f} times as high as they are wide in the picture: its pixels are not "
       "square, and all lengths along y, as the amplitude and heights, are wrong by this factor; resize the "
@@ -52,6 +54,13 @@ void RimAspect::add(const cv::Mat& grey, const std::vector<Detection>& discs, st
   cv::Mat1f levels;
   grey.convertTo(levels, CV_32F);
   const std::vector<RimSamples> rims = rim_samples(levels, discs);
+  constexpr double kReach = 1.1;  // sums of radii: discs farther apart do not touch
+  for (std::size_t i = 0; i < discs.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      const double x = discs[i].x - discs[k].x, y = discs[i].y - discs[k].y,
+                   reach = kReach * (discs[i].radius + discs[k].radius);
+      if (x * x + y * y < reach * reach) pairs_.push_back({x * x, y * y});
+    }
   std::size_t measured = 0;
   for (std::size_t b = 0; b < discs.size(); ++b) {
     const RimSamples& rim = rims[b];
@@ -85,6 +94,33 @@ void RimAspect::add(const cv::Mat& grey, const std::vector<Detection>& discs, st
   most_ = std::max(most_, measured);
 }
 
+// Touching discs have x^2/a^2 + y^2/b^2 = 1, others more, so that the quantile below which a tenth lies is
+// fitted, by least squares with weights that make them absolute deviations.
+std::optional<double> RimAspect::ratio_of_spacing() const {
+  constexpr std::size_t kMinPairs = 30;
+  constexpr double kQuantile = 0.15, kSmall = 1e-3;
+  constexpr int kRounds = 40;
+  if (pairs_.size() < kMinPairs) return std::nullopt;
+  double mean = 0;
+  for (const Pair& p : pairs_) mean += (p.xx + p.yy) / static_cast<double>(pairs_.size());
+  Eigen::Vector2d of(1 / mean, 1 / mean);  // 1/a^2, 1/b^2
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d right = Eigen::Vector2d::Zero();
+    for (const Pair& p : pairs_) {
+      const Eigen::Vector2d f(p.xx, p.yy);
+      const double left = f.dot(of) - 1,
+                   weight = (left > 0 ? kQuantile : 1 - kQuantile) / std::max(kSmall, std::abs(left));
+      normal += weight * f * f.transpose();
+      right += weight * f;
+    }
+    const Eigen::Vector2d next = normal.ldlt().solve(right);
+    if (!(next.minCoeff() > 0)) return std::nullopt;
+    of = next;
+  }
+  return std::sqrt(of.x() / of.y());
+}
+
 std::optional<Aspect> RimAspect::value() const {
   constexpr std::size_t kMinDiscs = 5;  // in one picture
   if (most_ < kMinDiscs) return std::nullopt;
@@ -100,8 +136,10 @@ std::optional<Aspect> RimAspect::value() const {
   // the deviation from 1 is measured 5 and 6 % too small.
   constexpr double kModelError = 0.06;
   // The error of a median; d ratio/d e is -2 for small e.
-  return Aspect{ratio, std::hypot(2 * 1.2533 * scatter / std::sqrt(static_cast<double>(most_)),
-                                  kModelError * (ratio - 1))};
+  return Aspect{
+      ratio,
+      std::hypot(2 * 1.2533 * scatter / std::sqrt(static_cast<double>(most_)), kModelError * (ratio - 1)),
+      ratio_of_spacing()};
 }
 
 }  // namespace twincell::imaging

@@ -18,9 +18,12 @@ namespace twincell::imaging {
 /// Extent along y over extent along x, and its standard error.
 struct Aspect {
   double ratio = 1, error = 0;
+  /// The same ratio from the distances of touching discs along y and x; absent if too few touch.
+  std::optional<double> of_spacing = {};
 
   /// A sentence, without a full stop, that says what to do, if the ratio differs from 1 by more than 0.015
-  /// and four standard errors. Empty otherwise.
+  /// and four standard errors, and the spacing by at least half as much in the same direction: light from one
+  /// side and highlights change the rims, but not the distances. Empty otherwise.
   [[nodiscard]] std::string doubt() const;
 };
 
@@ -48,7 +51,14 @@ class RimAspect {
     double e, weight;
     double across;  ///< (L_x^2 - L_y^2)/R^2 of the path L
   };
+  /// Two discs that may touch.
+  struct Pair {
+    double xx, yy;  ///< squares of their distance along x and y, px^2
+  };
+  [[nodiscard]] std::optional<double> ratio_of_spacing() const;
+
   std::vector<Part> discs_;
+  std::vector<Pair> pairs_;
   std::size_t most_ = 0;  ///< discs in a frame
 };
 

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/error.hpp"
 #include "core/median.hpp"
@@ -31,6 +33,7 @@ LocatorOptions at_rim(const cv::Mat& frame, LocatorOptions settled, const std::v
   for (const Detection& b : beads) radii.push_back(b.radius);
   LocatorOptions rim = settled;
   rim.diameter_px = std::clamp(2 * upper_median(std::move(radii)), 3.0, 400.0);
+  rim.size_known = true;
   return locate(frame, rim).beads.size() >= beads.size() ? rim : settled;
 }
 
@@ -58,6 +61,27 @@ LocatorOptions with_pale_discs(const cv::Mat& frame, const LocatorOptions& settl
   return robust_spread(std::move(pale), typical) < kAlike * typical ? options : settled;
 }
 
+/// The smallest distance of two discs, px, if they may be the highlights of larger beads: that of a tenth of
+/// them is more than two diameters, and they are less than 6 px wide or most have a neighbour at that
+/// distance, as beads that touch. 0: they are not.
+double distance_of_parts(const std::vector<Detection>& beads, const LocatorOptions& settled) {
+  constexpr std::size_t kMinDiscs = 20;
+  constexpr double kFew = 0.1, kDiameters = 2, kSmall_px = 6, kTouching = 1.1;
+  if (beads.size() < kMinDiscs || !settled.other_diameters_px.empty()) return 0;
+  std::vector<double> nearest;
+  for (const Detection& b : beads) {
+    double least = HUGE_VAL;
+    for (const Detection& o : beads)
+      if (&o != &b) least = std::min(least, std::hypot(o.x - b.x, o.y - b.y));
+    nearest.push_back(least);
+  }
+  std::sort(nearest.begin(), nearest.end());
+  const auto n = static_cast<double>(nearest.size());
+  const double closest = nearest[static_cast<std::size_t>(kFew * n)], half = nearest[nearest.size() / 2];
+  if (closest <= kDiameters * settled.diameter_px) return 0;
+  return settled.diameter_px < kSmall_px || half < kTouching * closest ? closest : 0;
+}
+
 /// Examines frames 0, 1, 2, 4, ... until one shows a bead with the settings found in it. The frames are few,
 /// because the search in one frame takes as long as locating many frames.
 LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given, int threads) {
@@ -83,6 +107,7 @@ LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given, in
     if (given.diameter_px <= 0 && model_of(settled.refine) == DiscModel::shared_profile)
       settled = at_rim(*frame, std::move(settled), beads);
     settled = with_pale_discs(*frame, settled);
+    choice.apart_px = distance_of_parts(locate(*frame, settled).beads, settled);
     return {settled, static_cast<std::int64_t>(k), std::move(choice)};
   }
   if (!first && given.diameter_px <= 0) {
@@ -103,8 +128,10 @@ LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given, in
 
 }  // namespace
 
-LocatorConfiguration configure_locator(FramesAhead& frames, const LocatorOptions& given, int threads) {
+LocatorConfiguration configure_locator(FramesAhead& frames, const LocatorOptions& options, int threads) {
   cv::setNumThreads(1);  // the only thread pool is that of this program
+  LocatorOptions given = options;
+  given.size_known = given.diameter_px > 0;
   const cv::Mat* first = frames.look(0);
   if (first == nullptr) return {given, 0, {}};
   if (given.diameter_px <= 0 || !given.polarity_known) return search(frames, given, threads);

@@ -39,6 +39,9 @@ struct SettingsChoice {
   /// The lattice constant of a crystal that fills the picture, px, if the chosen discs cover little of it:
   /// the beads of the crystal are not among them. 0: none.
   double uncovered_lattice_px = 0;
+  /// The smallest distance of two of the chosen discs, px, if it is that of larger beads that touch, of which
+  /// the discs may be the highlights. 0: it is not.
+  double apart_px = 0;
   /// Share of the pixels that have the brightest grey level of the picture, if the beads are dark. A camera
   /// that its light does not saturate has few of them.
   double saturated = 0;

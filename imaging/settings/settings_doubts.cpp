@@ -29,6 +29,12 @@ std::vector<std::string> settings_doubts(const SettingsChoice& choice, const std
         "beads found cover little of it: compare the overlay of twincell locate --overlay with and without "
         "--diameter {0:.1f} --dark or --bright",
         choice.uncovered_lattice_px));
+  if (choice.apart_px > 0)
+    doubts.push_back(fmt::format(
+        "no two of the discs, which are {:.1f} px wide, are closer than {:.1f} px: they may be the "
+        "highlights of larger beads; compare the overlay of twincell locate --overlay with that of "
+        "--diameter {:.1f}",
+        choice.tried.front().rim_px, choice.apart_px, choice.apart_px));
   constexpr double kSaturated = 0.1;
   if (choice.saturated > kSaturated)
     doubts.push_back(

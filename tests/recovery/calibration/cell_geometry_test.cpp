@@ -12,6 +12,7 @@
 #include "calibration/camera/bead_walls.hpp"
 #include "calibration/camera/size_statistics.hpp"
 #include "calibration/camera/target_fit.hpp"
+#include "calibration/drive/bed_in_view.hpp"
 #include "calibration/drive/drive_fit.hpp"
 #include "core/error.hpp"
 #include "tests/support/filmed_plate.hpp"
@@ -362,6 +363,81 @@ TEST(BeadWalls, TiltOfALeaningCellComesBackFromItsBeads) {
   EXPECT_NEAR(w.tilt_left, 2, 0.05);
   EXPECT_NEAR(w.tilt_right, 0, 0.05);
   EXPECT_NEAR(w.width, 10, 0.02);
+}
+
+// Rows of a crystal touch a wall in turn; before, the fitted walls were between the rows, 0.25 sigma inside.
+// Beads of a gas only come near. Before, its errors were those of the line alone.
+TEST(BeadWalls, ErrorsCoverBeadsThatDoNotTouch) {
+  constexpr int kTrials = 60, kFrames = 60, kRows = 12, kSide = 4;
+  constexpr double kWidth = 21.4;
+  for (const double gap : {0.0, 0.02, 0.1}) {
+    int covered = 0;
+    double largest = 0, bias = 0;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      std::mt19937_64 generator(static_cast<std::uint64_t>(trial));
+      std::exponential_distribution<double> away(1);
+      std::normal_distribution<double> noise(0, 0.003);
+      TrajectoryInfo info;
+      info.box.upper = Vec3(kWidth, 0.5, 12);
+      info.n_beads = 2 * kRows * kSide;
+      MemoryTrajectory t(info);
+      for (int f = 0; f < kFrames; ++f) {
+        Frame frame;
+        frame.step = f;
+        for (std::size_t i = 0; i < info.n_beads; ++i) {
+          const auto row = static_cast<int>(i) / 2 % kRows, place = static_cast<int>(i) / (2 * kRows);
+          const double inside =
+              0.5 + place + (row % 2 == 0 ? 0 : 0.5) + gap * away(generator) + noise(generator);
+          frame.position.emplace_back(i % 2 == 0 ? inside : kWidth - inside, 0, 0.5 + 0.866 * row);
+        }
+        t.append(frame);
+      }
+      const BeadWalls w = walls_from_beads(t);
+      covered += std::abs(w.width - kWidth) <= 2 * w.width_error ? 1 : 0;
+      largest = std::max(largest, w.width_error);
+      bias += (w.width - kWidth) / kTrials;
+    }
+    std::cout << "gap " << gap << ": bias " << bias << ", within two errors " << covered << " of " << kTrials
+              << ", error at most " << largest << "\n";
+    EXPECT_GE(covered, 57) << gap;
+    EXPECT_LT(largest, 0.015 + 0.5 * gap) << gap;
+  }
+}
+
+TEST(WallOfBed, ErrorsCoverBeadsThatDoNotTouchAndRimsThatAreNotTheSurface) {
+  constexpr int kTrials = 60, kFrames = 60, kTouching = 6;
+  constexpr double kDiameter = 13.4, kWall = 296.5;
+  struct Case {
+    double gap, rim;  // diameters
+  };
+  for (const auto& [gap, rim] : {Case{0, 0}, {0.02, 0}, {0.04, 0}, {0, -0.03}}) {
+    int covered = 0, found = 0;
+    double largest = 0;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      std::mt19937_64 generator(static_cast<std::uint64_t>(trial));
+      std::normal_distribution<double> noise(0, 0.004);
+      std::exponential_distribution<double> away(1);
+      BeadFrames beads;
+      for (int f = 0; f < kFrames; ++f) {
+        beads.frames.emplace_back();
+        for (int k = 0; k < kTouching; ++k) {
+          const double inside = 0.5 + gap * away(generator) + noise(generator);
+          beads.frames.back().push_back({kWall - inside * kDiameter, 10.0 * k, (0.5 + rim) * kDiameter, 0});
+        }
+        beads.counts.push_back(kTouching);
+      }
+      const auto wall = wall_of_bed(beads, kDiameter, true);
+      if (!wall) continue;
+      ++found;
+      covered += std::abs(wall->value - kWall) <= 4 * wall->error ? 1 : 0;
+      largest = std::max(largest, wall->error / kDiameter);
+    }
+    std::cout << "gap " << gap << ", rim " << rim << ": within four errors " << covered << " of " << found
+              << ", error at most " << largest << " diameters\n";
+    EXPECT_EQ(found, kTrials);
+    EXPECT_EQ(covered, found) << gap << ' ' << rim;
+    EXPECT_LT(largest, 0.006 + gap + 1.1 * std::abs(rim)) << gap << ' ' << rim;
+  }
 }
 
 TEST(Target, AChessboardGivesScaleTurnBendAndTilt) {
