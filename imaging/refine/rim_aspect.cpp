@@ -10,6 +10,7 @@
 
 #include "core/median.hpp"
 #include "imaging/refine/rim_samples.hpp"
+#include "imaging/refine/sparse_gauss_newton.hpp"
 
 namespace twincell::imaging {
 
@@ -55,12 +56,13 @@ void RimAspect::add(const cv::Mat& grey, const std::vector<Detection>& discs, st
   grey.convertTo(levels, CV_32F);
   const std::vector<RimSamples> rims = rim_samples(levels, discs);
   constexpr double kReach = 1.1;  // sums of radii: discs farther apart do not touch
-  for (std::size_t i = 0; i < discs.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k) {
-      const double x = discs[i].x - discs[k].x, y = discs[i].y - discs[k].y,
-                   reach = kReach * (discs[i].radius + discs[k].radius);
-      if (x * x + y * y < reach * reach) pairs_.push_back({x * x, y * y});
-    }
+  std::vector<Disc> wider;
+  for (const Detection& d : discs) wider.push_back({d.x, d.y, kReach * d.radius, 1});
+  for (const auto& [i, k] : near_pairs(wider, 0)) {
+    const Disc &a = wider[static_cast<std::size_t>(i)], &b = wider[static_cast<std::size_t>(k)];
+    const double x = a.x - b.x, y = a.y - b.y;
+    if (std::hypot(x, y) < a.radius + b.radius) pairs_.push_back({x * x, y * y});
+  }
   std::size_t measured = 0;
   for (std::size_t b = 0; b < discs.size(); ++b) {
     const RimSamples& rim = rims[b];

@@ -68,8 +68,11 @@ double distance_of_parts(const std::vector<Detection>& beads, const LocatorOptio
   constexpr std::size_t kMinDiscs = 20;
   constexpr double kFew = 0.1, kDiameters = 2, kSmall_px = 6, kTouching = 1.1;
   if (beads.size() < kMinDiscs || !settled.other_diameters_px.empty()) return 0;
+  constexpr std::size_t kMost = 2000;  // of whose neighbours a quantile is taken
+  const std::size_t stride = 1 + beads.size() / kMost;
   std::vector<double> nearest;
-  for (const Detection& b : beads) {
+  for (std::size_t k = 0; k < beads.size(); k += stride) {
+    const Detection& b = beads[k];
     double least = HUGE_VAL;
     for (const Detection& o : beads)
       if (&o != &b) least = std::min(least, std::hypot(o.x - b.x, o.y - b.y));

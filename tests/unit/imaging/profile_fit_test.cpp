@@ -34,6 +34,22 @@ TEST(DiscProfile, ThePlainDiscsRimIsWhereItsEdgeIs) {
       EXPECT_NEAR(profile_of({{radius, 0.9}}, blur).rim(), radius, 0.1) << radius << ' ' << blur;
 }
 
+// The rim of a body below its highlight is kept if its size is known; a disc that ends inside has another
+// size.
+TEST(DiscProfile, TheRimOfAKnownSizeIsNearIt) {
+  DiscProfile glossy = profile_of({{6.7, 0.35}, {2.2, 0.6}}, 1.6);
+  EXPECT_NEAR(glossy.rim_of_known(), 6.7, 0.35);
+  DiscProfile sloping = glossy;  // no shoulder: the highlight falls most steeply
+  for (std::size_t k = 0; k < sloping.levels.size(); ++k)
+    sloping.levels[k] = static_cast<float>(std::max(
+        0.0, 0.95 * std::exp(-0.2 * static_cast<double>(k) / 2) * (1 - static_cast<double>(k) / 2 / 9)));
+  EXPECT_LT(sloping.rim(), 0.8 * 6.7);
+  EXPECT_NEAR(sloping.rim_of_known(), 6.7, 0.2 * 6.7 + 0.5);
+  DiscProfile small = profile_of({{6.7, 1e-3}, {2.2, 0.9}}, 0.8);
+  EXPECT_NEAR(small.rim(), 2.2, 0.2);
+  EXPECT_EQ(small.rim_of_known(), 0);
+}
+
 TEST(DiscProfile, PlainDiscsOfAnyBlurArePlain) {
   for (const double radius : {5.0, 7.3, 16.0})
     for (const double blur : {0.5, 0.8, 1.5, 3.0}) {

@@ -66,6 +66,16 @@ TEST(RimAspect, LeavesOutWalls) {
   }
 }
 
+// What is seen at rims alone is light; what the distances of touching discs show too is the pixels.
+TEST(RimAspect, IsDoubtedOnlyIfTheSpacingAgrees) {
+  EXPECT_FALSE((Aspect{1.026, 0.002, {}}).doubt().empty());
+  EXPECT_FALSE((Aspect{1.026, 0.002, 1.02}).doubt().empty());
+  EXPECT_FALSE((Aspect{0.93, 0.002, 0.95}).doubt().empty());
+  EXPECT_TRUE((Aspect{1.026, 0.002, 1.001}).doubt().empty());
+  EXPECT_TRUE((Aspect{1.026, 0.002, 0.97}).doubt().empty());
+  EXPECT_TRUE((Aspect{0.974, 0.002, 1.0}).doubt().empty());
+}
+
 TEST(RimAspect, OfTooFewDiscsIsAbsent) {
   RimAspect all;
   all.add(stretched(1.1, 1), {discs(kRadius)[0]});
