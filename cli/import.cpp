@@ -69,9 +69,9 @@ void require_scale(const ImportOptions& o, const ForeignTrajectory& source, cons
     throw ConfigError(
         {o.file, 0, 0, "--gravity"},
         fmt::format(
-            "is missing: the lengths of the file are in {0}, so gravity in {0} and the file's unit of "
-            "time is needed, such as 9810 for mm and s.",
-            unit.substr(0, 40)));
+            "is missing: the lengths of the file are in {0}, so gravity in {0} and {1} is needed, such as "
+            "9810 for mm and s.",
+            unit.substr(0, 40), source.time_in_seconds() ? "seconds" : "the file's unit of time"));
   if (o.foreign.sigma != 1)
     note(common,
          "gravity is taken as 1 in the units of length and time of the file; --gravity gives another, "
@@ -221,7 +221,8 @@ void add_unit_options(CLI::App& verb, ImportOptions& o) {
   ForeignOptions& l = o.foreign;
   verb.add_option("--timestep", l.timestep,
                   "Length of a step, in the time unit of the file; required unless the file contains times. "
-                  "All lengths and times below are in the units of the file.");
+                  "All lengths and times below are in the units of the file; times are in seconds if the "
+                  "file states a unit such as ms.");
   o.sigma =
       verb.add_option(
               "--sigma", l.sigma,

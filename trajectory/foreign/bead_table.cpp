@@ -42,7 +42,39 @@ class TableReader final : public PictureBeadsReader {
     check_times();
   }
 
+  [[nodiscard]] std::string assumption() const override { return ignored_; }
+
  private:
+  /// Says which columns are not read, and which of these look like a quantity with a unit in its name.
+  /// Columns of trackpy, of `locate` and of `export` that no trajectory holds are ignored without a word.
+  void note_ignored(const std::vector<std::string>& names) {
+    constexpr std::array<std::string_view, 17> kKnown = {
+        "mass",      "size",  "ecc",  "signal",       "raw_mass", "ep",      "step", "phase", "cycle",
+        "ambiguous", "score", "edge", "sigma_radius", "index",    "level_0", "id",   ""};
+    std::vector<std::string> ignored, with_unit;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (twin_ == k || std::find(at_.begin(), at_.end(), std::optional(k)) != at_.end()) continue;
+      const std::string& name = names[k];
+      if (std::find(kKnown.begin(), kKnown.end(), name) != kKnown.end() || name.starts_with("Unnamed: "))
+        continue;
+      ignored.push_back("'" + name + "'");
+      for (const char* quantity : kQuantities)
+        if (!column(quantity) && name.starts_with(quantity) &&
+            name.size() > std::string_view(quantity).size() &&
+            std::string_view("_ ([").find(name[std::string_view(quantity).size()]) != std::string_view::npos)
+          with_unit.push_back(fmt::format("{}={}", quantity, name));
+    }
+    if (ignored.empty()) return;
+    ignored_ = fmt::format("{} of the table {} not read: {}.",
+                           ignored.size() == 1 ? "a column" : fmt::format("{} columns", ignored.size()),
+                           ignored.size() == 1 ? "is" : "are", fmt::join(ignored, ", "));
+    if (!with_unit.empty())
+      ignored_ += fmt::format(
+          " --columns {} reads {} without a conversion of units; lengths and times of a table have one unit "
+          "each.",
+          fmt::join(with_unit, " "), with_unit.size() == 1 ? "it" : "them");
+  }
+
   /// \throws InputError if beads of a frame have different times
   void check_times() const {
     std::size_t first = 0;
@@ -103,6 +135,7 @@ class TableReader final : public PictureBeadsReader {
                                      "track links them."
                                    : ""));
     if (options_.dimension == 3 && !column("z")) fail_at(1, "there is no column 'z' (--dimension 3).");
+    note_ignored(names);
     has_.radius = column("radius") || column("diameter");
     has_.mass = column("bead_mass").has_value();
     has_.type = has_.tracer = column("tracer").has_value();
@@ -154,12 +187,16 @@ class TableReader final : public PictureBeadsReader {
     if (u.minCoeff() < 0) fail_at(number, "a standard error is negative.");
     row.bead.uncertainty = upright(u).cwiseAbs();  // has no direction
     row.bead.radius = real("radius", 0.5 * real("diameter", 0));
+    if (has_.radius && !(row.bead.radius > 0)) {
+      const bool by_radius = column("radius").has_value();
+      fail_at(number, fmt::format("the {} is {:g}; it must be above 0.", by_radius ? "radius" : "diameter",
+                                  by_radius ? row.bead.radius : 2 * row.bead.radius));
+    }
     constexpr double kSameSize = 0.05;  // of numbers with few digits
     if (const double diameter = real("diameter", 2 * row.bead.radius);
         std::abs(2 * row.bead.radius - diameter) > kSameSize * diameter)
       fail_at(number, fmt::format("the radius is {:g} and the diameter {:g}, which is not twice the radius.",
                                   row.bead.radius, diameter));
-    if (has_.radius && !(row.bead.radius > 0)) fail_at(number, "a bead has no size.");
     row.bead.mass = real("bead_mass", 0);
     if (has_.mass && !(row.bead.mass > 0)) fail_at(number, "a bead has no mass.");
     row.bead.type = 1;
@@ -178,7 +215,7 @@ class TableReader final : public PictureBeadsReader {
   std::array<std::optional<std::size_t>, kQuantities.size()> at_{};
   std::size_t n_columns_ = 0;
   std::optional<std::size_t> twin_;  ///< of a column that pandas wrote twice
-  std::string index_name_;
+  std::string index_name_, ignored_;
 };
 
 /// The first line of a table with these columns.

@@ -67,6 +67,7 @@ class XyzReader final : public ForeignReader {
     return true;
   }
   [[nodiscard]] std::string length_unit() const override { return length_unit_; }
+  [[nodiscard]] std::string time_unit() const override { return time_unit_; }
   [[nodiscard]] const ForeignColumns& columns() const override { return has_; }
   [[nodiscard]] std::string assumption() const override {
     return states_no_pbc_
@@ -99,6 +100,10 @@ class XyzReader final : public ForeignReader {
     if (const std::string* step = value({"Timestep", "timestep", "Step", "step"})) s.step = whole(*step);
     read_box(s, value({"Lattice"}), value({"Origin", "origin"}), value({"pbc"}));
     if (const std::string* unit = value({"length_unit"})) length_unit_ = *unit;
+    if (const std::string* unit = value({"time_unit"})) {
+      if (n_frames_ > 1 && *unit != time_unit_) fail("time_unit is not that of the first frame.");
+      time_unit_ = *unit;
+    }
     const std::string* creator = value({"creator"});
     for (std::size_t k = 0; k < 3; ++k)  // export writes how far beads have moved
       has_.wrapped[k] = s.periodic[k] && !(creator && *creator == "twincell");
@@ -219,7 +224,7 @@ class XyzReader final : public ForeignReader {
   const Property *position_ = nullptr, *id_ = nullptr, *radius_ = nullptr, *mass_ = nullptr, *type_ = nullptr,
                  *velocity_ = nullptr, *spin_ = nullptr;
   ForeignColumns has_;
-  std::string length_unit_;
+  std::string length_unit_, time_unit_;
   bool has_box_ = false, states_no_pbc_ = false;
   std::int64_t n_beads_ = 0;
   std::int64_t n_frames_ = 0;

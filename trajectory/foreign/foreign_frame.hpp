@@ -96,6 +96,8 @@ class ForeignReader {
   [[nodiscard]] virtual std::string assumption() const { return {}; }
   /// The unit of length that the file states; otherwise empty.
   [[nodiscard]] virtual std::string length_unit() const { return {}; }
+  /// The unit of time that the file states for its times and velocities; otherwise empty.
+  [[nodiscard]] virtual std::string time_unit() const { return {}; }
   /// A vector of the file in the axes of ForeignFrame.
   [[nodiscard]] virtual Vec3 upright(const Vec3& v) const { return v; }
   /// Bytes of the file, and how many of them have been read.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -34,9 +35,78 @@ double spacing_of(const ForeignFrame& s) {
   return median_spacing(centres);
 }
 
-/// Reads the next frame and sorts its beads by id. \throws InputError if an id occurs twice
+/// Units of time by their names in lower case, and their lengths in seconds.
+constexpr std::array<std::pair<std::string_view, double>, 28> kTimeUnits = {{{"s", 1},
+                                                                             {"sec", 1},
+                                                                             {"secs", 1},
+                                                                             {"second", 1},
+                                                                             {"seconds", 1},
+                                                                             {"ms", 1e-3},
+                                                                             {"msec", 1e-3},
+                                                                             {"millisecond", 1e-3},
+                                                                             {"milliseconds", 1e-3},
+                                                                             {"us", 1e-6},
+                                                                             {"usec", 1e-6},
+                                                                             {"\u00b5s", 1e-6},
+                                                                             {"\u03bcs", 1e-6},
+                                                                             {"microsecond", 1e-6},
+                                                                             {"microseconds", 1e-6},
+                                                                             {"ns", 1e-9},
+                                                                             {"nsec", 1e-9},
+                                                                             {"nanosecond", 1e-9},
+                                                                             {"nanoseconds", 1e-9},
+                                                                             {"min", 60},
+                                                                             {"mins", 60},
+                                                                             {"minute", 60},
+                                                                             {"minutes", 60},
+                                                                             {"h", 3600},
+                                                                             {"hr", 3600},
+                                                                             {"hour", 3600},
+                                                                             {"hours", 3600},
+                                                                             {"d", 86400}}};
+
+std::string in_lower_case(std::string word) {
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return word;
+}
+
+/// Length of the unit of time with this name, s; nothing if the name is not known.
+std::optional<double> seconds_of(const std::string& unit) {
+  const std::string word = in_lower_case(unit);
+  for (const auto& [name, seconds] : kTimeUnits)
+    if (word == name) return seconds;
+  return {};
+}
+
+/// Says in which unit times are read; empty if that is the unit of the file and no other is likely.
+std::string conversion_of_times(const std::string& unit) {
+  constexpr std::array<std::string_view, 5> kReduced = {"", "t0", "tau", "lj", "sqrt(sigma/g)"};
+  if (std::find(kReduced.begin(), kReduced.end(), in_lower_case(unit)) != kReduced.end()) return {};
+  const std::optional<double> seconds = seconds_of(unit);
+  if (seconds == 1.0) return {};
+  if (seconds)
+    return fmt::format(
+        "the times and velocities of the file are in {} and are converted to seconds; --gravity, --timestep "
+        "and --drive-omega are in seconds too (9810 for mm).",
+        unit);
+  return fmt::format(
+      "the file states its times in '{}', which is not a known unit of time: they are taken as they are, and "
+      "--gravity, --timestep and --drive-omega are in this unit.",
+      unit.substr(0, 40));
+}
+
+/// Reads the next frame, converts its times and velocities to seconds if the file states a unit of them, and
+/// sorts its beads by id. \throws InputError if an id occurs twice
 bool next_sorted(ForeignReader& reader, ForeignFrame& s) {
   if (!reader.next(s)) return false;
+  if (const double unit = seconds_of(reader.time_unit()).value_or(1); unit != 1) {
+    if (s.time) *s.time *= unit;
+    for (ForeignBead& bead : s.beads) {
+      bead.velocity /= unit;
+      bead.spin /= unit;
+    }
+  }
   std::stable_sort(s.beads.begin(), s.beads.end(),
                    [](const ForeignBead& a, const ForeignBead& b) { return a.id < b.id; });
   const auto twice =
@@ -149,6 +219,7 @@ struct ForeignTrajectory::Impl {
   std::size_t beyond = 0;                    ///< beads of the first frame beside the cell
   PositionExtent extent;                     ///< of all beads and frames, axes and unit of ForeignFrame
   std::string assumption, length_unit;
+  bool time_in_seconds = false;
 
   /// Converts a vector from the axes of ForeignFrame to those of Box. In 2D, its y is our z, and its -z
   /// is our y.
@@ -289,9 +360,11 @@ struct ForeignTrajectory::Impl {
   void state_assumptions(const ForeignReader& reader, const SeenBeads& seen) {
     const ForeignColumns& columns = reader.columns();
     assumption = reader.assumption();
+    time_in_seconds = seconds_of(reader.time_unit()).has_value();
     const auto add = [&](const std::string& sentence) {
       if (!sentence.empty()) assumption += std::string(assumption.empty() ? "" : " ") + sentence;
     };
+    add(conversion_of_times(reader.time_unit()));
     if (columns.radius) add(changing_radii(seen));
     if (columns.mass && !o.bead_mass) add(unread_masses(seen));
     if (columns.type && !tracer_type(columns)) add(unused_types(seen));
@@ -455,6 +528,9 @@ const std::vector<std::int64_t>& ForeignTrajectory::ids() const {
 
 std::string ForeignTrajectory::length_unit() const {
   return impl_->length_unit;
+}
+bool ForeignTrajectory::time_in_seconds() const {
+  return impl_->time_in_seconds;
 }
 std::string ForeignTrajectory::assumption() const {
   return impl_->assumption;

@@ -18,7 +18,9 @@
 
 namespace twincell {
 
-/// Information that a file does not contain. Lengths and times are in the file's own units.
+/// Information that a file does not contain. Lengths and times are in the file's own units; if the file
+/// states a unit of time such as ms, its times and velocities are converted to seconds, and times here are in
+/// seconds.
 struct ForeignOptions {
   int dimension = 2;               ///< 2: the file's plane (x, y), y up; 3: z up
   std::optional<double> timestep;  ///< length of a step; required unless the file has times
@@ -71,6 +73,8 @@ class ForeignTrajectory {
   [[nodiscard]] const std::vector<std::int64_t>& ids() const;
   /// The unit of length that the file states; otherwise empty.
   [[nodiscard]] std::string length_unit() const;
+  /// Whether the file states a known unit of time, so that times are in seconds (ForeignOptions).
+  [[nodiscard]] bool time_in_seconds() const;
   /// What was assumed of the file, in sentences; otherwise empty.
   [[nodiscard]] std::string assumption() const;
   /// Appends all frames to `sink` in order.

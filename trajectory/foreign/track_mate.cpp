@@ -71,6 +71,7 @@ class TrackMateReader final : public PictureBeadsReader {
   }
 
   [[nodiscard]] std::string length_unit() const override { return length_unit_; }
+  [[nodiscard]] std::string time_unit() const override { return time_unit_; }
 
  private:
   [[nodiscard]] std::string_view needed(const pugi::xml_node& node, const char* name) const {
@@ -99,6 +100,7 @@ class TrackMateReader final : public PictureBeadsReader {
   void read_list(const pugi::xml_node& list) {
     std::int64_t particle = 0;
     length_unit_ = list.attribute("spaceUnits").value();
+    time_unit_ = list.attribute("timeUnits").value();
     const bool timed = list.attribute("frameInterval");
     const double interval = timed ? number(list, "frameInterval") : 0;
     if (timed && !(interval > 0))
@@ -118,6 +120,7 @@ class TrackMateReader final : public PictureBeadsReader {
     std::unordered_map<std::int64_t, std::size_t> place;  // ID -> entry of beads_
     has_.radius = true;
     length_unit_ = model.attribute("spatialunits").value();
+    time_unit_ = model.attribute("timeunits").value();
     for (const pugi::xml_node& frame : model.child("AllSpots").children("SpotsInFrame"))
       for (const pugi::xml_node& node : frame.children("Spot")) {
         BeadOfFrame found = spot(node, "FRAME", {"POSITION_X", "POSITION_Y", "POSITION_Z"});
@@ -166,7 +169,7 @@ class TrackMateReader final : public PictureBeadsReader {
   }
 
   XmlText xml_;
-  std::string length_unit_;
+  std::string length_unit_, time_unit_;
 };
 
 constexpr const char* kTrackMateMark = "<!-- written by twincell -->";

@@ -532,6 +532,24 @@ TEST_F(ForeignFormats, TracksOfTrackMateHaveTheirTimes) {
             std::string::npos);
 }
 
+TEST_F(ForeignFormats, ColumnsOfATableThatAreNotReadAreNamed) {
+  const auto said = [&](const std::string& columns) {
+    put_file(file(), "frame,particle,x,y" + columns + "\n0,0,1,-1,2,5,0\n1,0,1,-1,2,5,100\n");
+    return ForeignTrajectory(file(), foreign_format("csv", ""), {.timestep = 1}).assumption();
+  };
+  EXPECT_EQ(said(",mass,ecc,step"), "") << "of trackpy and of export";
+  EXPECT_EQ(said(",mass,spin,step"), "a column of the table is not read: 'spin'.");
+  EXPECT_EQ(
+      said(",radius_mm,time_ms,spin"),
+      "3 columns of the table are not read: 'radius_mm', 'time_ms', 'spin'. --columns radius=radius_mm "
+      "time=time_ms reads them without a conversion of units; lengths and times of a table have one "
+      "unit each.");
+  EXPECT_EQ(refusal("csv", "frame,particle,x,y,radius\n0,0,1,-1,-0.3\n"),
+            "f:2: the radius is -0.3; it must be above 0.");
+  EXPECT_EQ(refusal("csv", "frame,particle,x,y,diameter\n0,0,1,-1,-0.6\n"),
+            "f:2: the diameter is -0.6; it must be above 0.");
+}
+
 // pandas writes the index of a table as its first column, which trackpy's filters leave in the table too.
 TEST_F(ForeignFormats, AColumnThatIsAlsoTheIndexIsReadOnce) {
   const std::string head = "frame,frame,particle,x,y\n";
@@ -643,6 +661,50 @@ TEST_F(ForeignFormats, FilesOfTrackMate) {
   ASSERT_EQ(t.info().n_beads, 2U);
   EXPECT_FALSE(t.frames()[0].present(1));
   EXPECT_NEAR(t.frames()[1].time, 0.5 / std::sqrt(5.0), 1e-12);  // t0 = sqrt(sigma/g)
+}
+
+// Times and velocities are converted to seconds where the file states a unit of time.
+TEST_F(ForeignFormats, TimesInMillisecondsAreConvertedToSeconds) {
+  ForeignOptions options;
+  options.sigma = 0.25;
+  options.gravity = 4;  // t0 = 0.25
+  const auto read_xyz = [&](const std::string& unit) {
+    std::string text;
+    for (const int f : {0, 1})
+      text += fmt::format(
+          "1\nTime={} Timestep={} length_unit=mm{} pbc=\"F F F\" Lattice=\"9 0 0 0 9 0 0 0 1\" "
+          "Properties=species:S:1:pos:R:3:velo:R:3\nX 1 1 0 2 0 0\n",
+          50 * f, f, unit.empty() ? "" : " time_unit=" + unit);
+    put_file(file(), text);
+    const ForeignTrajectory source(file(), foreign_format("xyz", ""), options);
+    MemoryTrajectory t(source.info());
+    source.copy_to(t);
+    return std::pair(t, source.assumption());
+  };
+  for (const char* seconds : {"", "s", "sec"}) {
+    const auto [t, note] = read_xyz(seconds);
+    EXPECT_DOUBLE_EQ(t.frames()[1].time, 50 / 0.25) << seconds;
+    EXPECT_DOUBLE_EQ(t.frames()[1].velocity[0].x(), 2 * 0.25 / 0.25) << seconds;
+    EXPECT_EQ(note, "") << seconds;
+  }
+  const auto [t, note] = read_xyz("ms");
+  EXPECT_NEAR(t.frames()[1].time, 0.05 / 0.25, 1e-12);
+  EXPECT_NEAR(t.frames()[1].velocity[0].x(), 2000 * 0.25 / 0.25, 1e-9);
+  EXPECT_NE(note.find("are in ms and are converted to seconds"), std::string::npos) << note;
+  const auto [taken, unknown] = read_xyz("frame");
+  EXPECT_DOUBLE_EQ(taken.frames()[1].time, 50 / 0.25);
+  EXPECT_NE(unknown.find("'frame', which is not a known unit of time"), std::string::npos) << unknown;
+
+  put_file(file(),
+           "<Tracks nTracks=\"1\" spaceUnits=\"mm\" frameInterval=\"50\" timeUnits=\"msec\"><particle "
+           "nSpots=\"2\"><detection t=\"0\" x=\"1\" y=\"2\" z=\"0\"/><detection t=\"1\" x=\"1.5\" y=\"2\" "
+           "z=\"0\"/></particle></Tracks>");
+  options.origin = Vec3(0, 4, 0);
+  EXPECT_NEAR(read("trackmate", options).frames()[1].time, 0.05 / 0.25, 1e-12);
+  std::string model = kTrackMate;
+  model.replace(model.find("timeunits=\"sec\""), 15, "timeunits=\"ms\"");
+  put_file(file(), model);
+  EXPECT_NEAR(read("trackmate", in_pixels()).frames()[1].time, 0.5e-3 / std::sqrt(5.0), 1e-15);
 }
 
 TEST_F(ForeignFormats, DamagedTrackMateFiles) {
