@@ -137,7 +137,9 @@ std::string file_hint(const std::vector<std::string>& words, const std::string& 
     if (std::string advice = advice_on_toml(words[0], word, complaint); !advice.empty()) return advice;
     if (!complaint.starts_with(word + ": ")) continue;
     // Complaints about an output say themselves what to name instead.
-    for (const char* of_output : {": the output", ": the file exists and", ": the folder is "})
+    for (const char* of_output : {": the output", ": the file exists and", ": the folder is ",
+                                  ": the file is write-protected", ": the file is a mount point",
+                                  ": the file belongs to", ": a file of that name", ": a folder or file of"})
       if (complaint.starts_with(word + of_output)) return {};
     std::error_code error;
     return fs::exists(fs::symlink_status(word, error)) ? advice_on_kind(words[0], word)

@@ -212,17 +212,23 @@ std::string failed_name(const std::string& output) {
 }
 
 /// Whether a run that is to be resumed has already finished. \throws ConfigError if the output exists but
-/// belongs to another scene
+/// belongs to another scene or to another file of the start
 bool is_finished(const sim::Scene& scene, const SimulateOptions& options) {
   if (!options.resume || sim::CheckpointFolder::holds_a_run(sim::CheckpointFolder::of(options.output)) ||
       !std::filesystem::exists(options.output))
     return false;
-  const auto provenance =
-      nlohmann::json::parse(H5mdReader(options.output).info().provenance_json, nullptr, false);
+  const std::string stored = H5mdReader(options.output).info().provenance_json;
+  const auto provenance = nlohmann::json::parse(stored, nullptr, false);
   if (!provenance.is_object() || provenance.value("config", nlohmann::json()) != scene.resolved)
     throw ConfigError(
         {options.output, 0, 0, "--resume"},
         "the output belongs to another scene, and there is no checkpoint next to it to resume from.");
+  if (sim::has_other_start(scene, stored))
+    throw ConfigError(
+        scene.where("start.from"),
+        fmt::format("{} has changed since {} was written; without --resume the run begins again "
+                    "and replaces it.",
+                    scene.from.string(), options.output));
   return true;
 }
 
@@ -250,12 +256,17 @@ void run_into(H5mdWriter& writer, sim::Simulation& run, Progress& progress, sim:
   try {
     run.run(sink, progress, std::numeric_limits<std::int64_t>::max(), times);
   } catch (const RunError& e) {
-    const std::string kept = failed_name(output);
-    if (folder != nullptr)
-      folder->gather(writer, [&] { writer.finish_as(kept); });
-    else
-      writer.finish_as(kept);
-    throw RunError(std::string(e.what()) + " The frames up to that point are in " + kept + ".");
+    std::filesystem::path kept;
+    const auto keep = [&] { kept = writer.finish_as_failed(failed_name(output), e.what()); };
+    try {
+      if (folder != nullptr)
+        folder->gather(writer, keep);
+      else
+        keep();
+    } catch (const Error& not_kept) {  // says why the run failed in any case
+      throw RunError(fmt::format("{} Its frames are lost: {}", e.what(), not_kept.what()));
+    }
+    throw RunError(std::string(e.what()) + " The frames up to that point are in " + kept.string() + ".");
   }
   const Stage finishing(times, "writing");
   if (folder == nullptr) return writer.finish();

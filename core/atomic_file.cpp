@@ -173,26 +173,41 @@ void AtomicPath::commit() {
   (void)sync_to_disk(final_.parent_path());
 }
 
-void AtomicPath::commit_as(const fs::path& other_name) {
+fs::path AtomicPath::commit_as(const fs::path& other_name, const Product& product) {
+  product_ = product;
   given_ = other_name;
-  final_ = require_output(other_name, product_);
+  try {
+    final_ = require_output(other_name, product_);
+  } catch (const ConfigError& e) {
+    const fs::path kept = keep_beside(final_.parent_path() / other_name.filename());
+    if (kept.empty()) throw RunError(e.what());
+    return kept;
+  }
   commit();
+  return given_;
 }
 
 void AtomicPath::give_way(const fs::path& target, const std::string& obstacle) {
+  fail_and_keep(target, obstacle + " appeared or changed during the run and is not replaced");
+}
+
+void AtomicPath::fail_and_keep(const fs::path& target, const std::string& why) {
+  const fs::path kept = keep_beside(target);
+  throw RunError(
+      kept.empty()
+          ? fmt::format("{}: {}, and no other name in its folder can be given.", given_.string(), why)
+          : fmt::format("{}: {}; the finished output is {}.", given_.string(), why, kept.string()));
+}
+
+fs::path AtomicPath::keep_beside(const fs::path& target) {
   for (int k = 1; k < 10000; ++k) {
-    const fs::path other =
-        target.parent_path() / fmt::format("{}.twincell-{}", target.filename().string(), k);
+    fs::path other = target.parent_path() / fmt::format("{}.twincell-{}", target.filename().string(), k);
     if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, other.c_str(), RENAME_NOREPLACE) != 0) continue;
     open_ = false;
     forget_temporary(part_);
-    throw RunError(
-        fmt::format("{}: {} appeared or changed during the run and is not replaced; the finished output is "
-                    "{}.",
-                    given_.string(), obstacle, other.string()));
+    return other;
   }
-  throw RunError(given_.string() + ": " + obstacle +
-                 " is in the way, and no other name is free in its folder.");
+  return {};
 }
 
 void AtomicPath::place_file(const fs::path& target) {
@@ -203,9 +218,7 @@ void AtomicPath::place_file(const fs::path& target) {
     give_way(target, "a file of that name");
   keep_rights(target, part_);
   fs::rename(part_, target, ec);
-  if (ec)
-    throw RunError(given_.string() + ": the finished output cannot be renamed to this path (" + ec.message() +
-                   ").");
+  if (ec) fail_and_keep(target, "the output cannot take this name (" + ec.message() + ")");
 }
 
 void AtomicPath::print() {
@@ -236,7 +249,7 @@ void AtomicPath::place_folder(const fs::path& target) {
     if (ec == std::errc::directory_not_empty || ec == std::errc::file_exists ||
         ec == std::errc::not_a_directory)
       give_way(target, "a folder or file of that name");
-    if (ec) fail(ec);
+    if (ec) fail_and_keep(target, "the output cannot take this name (" + ec.message() + ")");
     return;
   }
   if (!product_.shared && only_listed(target, *old)) {

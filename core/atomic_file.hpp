@@ -35,17 +35,23 @@ class AtomicPath {
   [[nodiscard]] const std::filesystem::path& final() const { return given_; }
   /// Renames `part()` to `final()`.
   /// \throws RunError naming the path. If something that must not be replaced has appeared there during the
-  /// run, the finished output stays in the same folder as NAME.twincell-K, which the message states.
+  /// run, or the system refuses the name, the finished output stays in the same folder as NAME.twincell-K,
+  /// which the message states.
   void commit();
   /// Renames `part()` to another name in the same folder, for example to keep the frames of a failed run
-  /// under a name that marks them as such. The same replacement rules apply to that name.
-  void commit_as(const std::filesystem::path& other_name);
+  /// under a name that marks them as such. Only a file of the kind `product` is replaced there; if another
+  /// one is in the way, the output gets the name NAME.twincell-K. \returns the name that it has now
+  std::filesystem::path commit_as(const std::filesystem::path& other_name, const Product& product);
 
  private:
   void place_file(const std::filesystem::path& target);
   void print();
   void place_folder(const std::filesystem::path& target);
   [[noreturn]] void give_way(const std::filesystem::path& target, const std::string& obstacle);
+  /// Renames `part()` to NAME.twincell-K, the first name that is free. \returns it; empty if there is none
+  std::filesystem::path keep_beside(const std::filesystem::path& target);
+  /// Keeps the output so. \throws RunError with `why` and the name
+  [[noreturn]] void fail_and_keep(const std::filesystem::path& target, const std::string& why);
 
   std::filesystem::path given_;  ///< as the user wrote it
   std::filesystem::path final_;  ///< absolute, links resolved

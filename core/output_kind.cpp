@@ -43,6 +43,13 @@ bool made_by_twincell(hid_t file) {
          h5::read_text_attribute(creator.get(), "name") == std::vector<std::string>{"twincell"};
 }
 
+/// Whether a trajectory states that its run failed.
+bool is_of_failed_run(hid_t file) {
+  if (H5Lexists(file, "twincell", H5P_DEFAULT) <= 0) return false;
+  const h5::Handle ours = h5::own(H5Oopen(file, "twincell", H5P_DEFAULT), "twincell");
+  return H5Aexists(ours.get(), "failed") > 0;
+}
+
 /// Whether a trajectory states this source, or none. \param source empty: any
 bool is_of_source(hid_t file, const std::string& source) {
   if (source.empty() || H5Lexists(file, "twincell", H5P_DEFAULT) <= 0) return true;
@@ -74,6 +81,8 @@ bool is_product(const std::filesystem::path& file, const Product& product) {
     case Product::Sign::h5md_creator:
       return hdf5_says(file,
                        [&](hid_t id) { return made_by_twincell(id) && is_of_source(id, product.mark); });
+    case Product::Sign::failed_run:
+      return hdf5_says(file, [](hid_t id) { return made_by_twincell(id) && is_of_failed_run(id); });
     case Product::Sign::results_group:
       return hdf5_says(file, [](hid_t id) {
         return H5Lexists(id, "results", H5P_DEFAULT) > 0 && H5Lexists(id, "provenance", H5P_DEFAULT) > 0;

@@ -15,6 +15,7 @@ struct Product {
   enum class Sign {
     none,             ///< it is not: an existing file never counts as a product
     h5md_creator,     ///< HDF5, /h5md/creator@name = "twincell"; /twincell@source = `mark` if both are stated
+    failed_run,       ///< as h5md_creator, and /twincell@failed
     results_group,    ///< HDF5 with /results and /provenance
     checkpoint,       ///< HDF5 with the root attribute "sha256"
     first_line,       ///< the first line is `mark`
@@ -39,6 +40,10 @@ struct Product {
 
   /// \param source "simulation" or "experiment": one never replaces the other; empty: of any source
   static Product trajectory(const std::string& source = {});
+  /// The frames of a run that failed; no other trajectory counts as one.
+  static Product failed_run() {
+    return {.name = "the frames of a failed run", .sign = Sign::failed_run, .mark = {}};
+  }
   static Product results() { return {.name = "a results file", .sign = Sign::results_group, .mark = {}}; }
   static Product checkpoint() { return {.name = "a checkpoint", .sign = Sign::checkpoint, .mark = {}}; }
   /// A CSV table with this header line.

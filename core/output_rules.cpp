@@ -53,7 +53,7 @@ std::vector<fs::path> inputs() {
   return rules().inputs;
 }
 
-/// Whether a folder is a mount point, judged by its parent folder and by the kernel's list of mount points.
+/// Whether a folder or file is a mount point, judged by its parent folder and by the kernel's list of them.
 bool is_mount_point(const fs::path& folder) {
   struct stat here = {}, above = {};
   if (::stat(folder.c_str(), &here) == 0 && ::stat((folder / "..").c_str(), &above) == 0 &&
@@ -74,6 +74,15 @@ bool is_mount_point(const fs::path& folder) {
     if (name == folder.string()) return true;
   }
   return false;
+}
+
+/// Whether the system lets no one but its owner replace an existing file: its folder is sticky, as /tmp is,
+/// and neither belongs to this user.
+bool kept_by_sticky_folder(const fs::path& file) {
+  struct stat here = {}, above = {};
+  const uid_t user = ::geteuid();
+  return user != 0 && ::lstat(file.c_str(), &here) == 0 && ::stat(file.parent_path().c_str(), &above) == 0 &&
+         (above.st_mode & S_ISVTX) != 0 && here.st_uid != user && above.st_uid != user;
 }
 
 bool is_temporary(const fs::path& name) {
@@ -112,8 +121,9 @@ void require_unprotected(const fs::path& final, const Product& product, const Wh
     throw ConfigError(where, fmt::format("the file is write-protected; choose another name, or change its "
                                          "permissions{}.",
                                          or_by_force()));
-  const bool is_data =
-      product.sign == Product::Sign::h5md_creator || product.sign == Product::Sign::results_group;
+  const bool is_data = product.sign == Product::Sign::h5md_creator ||
+                       product.sign == Product::Sign::failed_run ||
+                       product.sign == Product::Sign::results_group;
   if (!is_data) return;
   const auto manifest = Manifest::read(final.parent_path());
   if (manifest && manifest->files.contains(final.filename().string()))
@@ -146,6 +156,14 @@ void require_file(const fs::path& final, const Product& product, const Where& wh
     throw ConfigError(where, "the output is a folder where a file is to be written.");
   if (!fs::is_regular_file(status))
     throw ConfigError(where, "the output is not a regular file (a device, pipe or socket).");
+  // Both would be refused only when the finished output is renamed, after all the work.
+  if (is_mount_point(final))
+    throw ConfigError(where, "the file is a mount point and cannot be replaced; choose another name.");
+  if (kept_by_sticky_folder(final))
+    throw ConfigError(
+        where, fmt::format("the file belongs to another user, and in the folder '{}' (sticky bit) only "
+                           "its owner can replace it; choose another name.",
+                           final.parent_path().string()));
   if (!may_replace(final, product))
     throw ConfigError(where,
                       fmt::format("the file exists and {}; choose another name{}.",
@@ -183,6 +201,11 @@ void require_folder(const fs::path& final, const Product& product, const Where& 
   if (::access(final.c_str(), R_OK | W_OK | X_OK) != 0)
     throw ConfigError(where, "the output's folder cannot be written to.");
   const std::string first = first_entry(final, product.shared, where);
+  if (first.empty() && !product.shared && kept_by_sticky_folder(final))  // it is replaced as a whole
+    throw ConfigError(
+        where, fmt::format("the folder belongs to another user, and in the folder '{}' (sticky bit) only "
+                           "its owner can replace it; name a new folder.",
+                           final.parent_path().string()));
   if (first.empty()) return;
   const auto manifest = Manifest::read(final);
   if (!manifest)

@@ -314,10 +314,6 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
   return c;
 }
 
-namespace {
-
-/// Whether the file of the start is none of those that the run read. One that was removed is not needed any
-/// more, and the record of a drive has a key of its own.
 bool has_other_start(const Scene& scene, const std::string& provenance_json) {
   const auto provenance = nlohmann::json::parse(provenance_json, nullptr, false);
   std::error_code none;
@@ -327,8 +323,6 @@ bool has_other_start(const Scene& scene, const std::string& provenance_json) {
   return !inputs.empty() && std::none_of(inputs.begin(), inputs.end(),
                                          [&](const auto& i) { return i.value("sha256", "") == now; });
 }
-
-}  // namespace
 
 void require_same_run(const Scene& scene, const Checkpoint& checkpoint,
                       const std::filesystem::path& checkpoint_name) {

@@ -38,6 +38,10 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
 /// \throws InputError if it is missing, damaged in any number, or of another version
 Checkpoint read_checkpoint(const std::filesystem::path& path);
 
+/// Whether the file of start.from is none of the inputs in the provenance of a run. False if it was removed
+/// since, because the run does not need it any more; the record of a drive has a key of its own.
+bool has_other_start(const Scene& scene, const std::string& provenance_json);
+
 /// Checks that a run of this scene with this program may continue from the checkpoint.
 /// \throws ConfigError naming the first key in which the scenes differ, or both program versions
 void require_same_run(const Scene& scene, const Checkpoint& checkpoint,

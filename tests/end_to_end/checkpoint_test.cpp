@@ -161,6 +161,24 @@ TEST_F(Checkpoints, AChangedFileOfTheStartIsRefused) {
   EXPECT_EQ(run_program(words({"--resume"})).code, kDone);
 }
 
+// A finished run is not finished any more once the file of its start has changed.
+TEST_F(Checkpoints, AFinishedRunOfAChangedStartIsRefused) {
+  const auto put_beads = [&](double x) {
+    std::ofstream(folder_ / "beads.csv") << "x,z\n0.6,0.6\n" << x << ",0.6\n";
+  };
+  put_beads(3);
+  std::ofstream(scene_)
+      << "preset = \"fortini-huang-2015\"\n[cell]\nwidth = 8.0\n[drive]\ngamma = 2.0\n[start]\n"
+         "kind = \"table\"\nfrom = \"beads.csv\"\n[time]\nsteps_per_contact = 10\ncycles = 1\n"
+         "discard = 0\n";
+  ASSERT_EQ(run_program(words({})).code, kDone);
+  EXPECT_EQ(run_program(words({"--resume"})).code, kDone);
+  put_beads(5);
+  expect_refusal({"--resume"}, kUsage, {"start.from", "beads.csv has changed since", "o.h5 was written"});
+  put_beads(3);
+  EXPECT_EQ(run_program(words({"--resume"})).code, kDone);
+}
+
 TEST_F(Checkpoints, WhatAnotherVersionWroteIsRefused) {
   ASSERT_EQ(stopped_in_the_middle(SIGINT).code, 130);
   {

@@ -21,7 +21,7 @@ class H5mdWriter : public TrajectorySink {
  public:
   /// \throws ConfigError if the output cannot be written (AtomicPath)
   H5mdWriter(const std::filesystem::path& path, TrajectoryInfo info);
-  ~H5mdWriter() override;  ///< without finish() or finish_as(), deletes the file
+  ~H5mdWriter() override;  ///< without finish() or finish_as_failed(), deletes the file
   H5mdWriter(const H5mdWriter&) = delete;
   H5mdWriter& operator=(const H5mdWriter&) = delete;
 
@@ -29,8 +29,10 @@ class H5mdWriter : public TrajectorySink {
   void append(const Frame& frame) override;
   /// Closes the file and gives it its final name.
   void finish();
-  /// Closes the file and gives it another name in the same folder: the output of a run that failed.
-  void finish_as(const std::filesystem::path& other_name);
+  /// Marks the file as the output of a run that failed, for the reason `why`, closes it and gives it another
+  /// name in the same folder.
+  /// \returns its name, which is another one if a file that is not of a failed run has `name`
+  std::filesystem::path finish_as_failed(const std::filesystem::path& name, const std::string& why);
 
  private:
   struct Impl;

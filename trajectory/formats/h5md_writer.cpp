@@ -349,9 +349,14 @@ void H5mdWriter::finish() {
   impl_->path.commit();
 }
 
-void H5mdWriter::finish_as(const fs::path& other_name) {
+fs::path H5mdWriter::finish_as_failed(const fs::path& name, const std::string& why) {
+  {
+    const h5::Handle ours =
+        h5::own(H5Gopen2(impl_->file.get(), "twincell", H5P_DEFAULT), impl_->path.final().string());
+    h5::write_attribute(ours.get(), "failed", why);
+  }
   impl_->close();
-  impl_->path.commit_as(other_name);
+  return impl_->path.commit_as(name, Product::failed_run());
 }
 
 }  // namespace twincell

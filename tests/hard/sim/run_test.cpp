@@ -297,5 +297,42 @@ TEST(Run, FailedRunKeepsItsFrames) {
   }
 }
 
+// The frames of a failed run replace only those of another failed run: neither a user's file nor a complete
+// run that has their name. The reason of the failure is printed in each case.
+TEST(Run, AFailedRunReplacesNothingButAFailedRun) {
+  const TemporaryFolder folder;
+  const auto put_scene = [&](const char* gamma) {
+    std::ofstream(folder / "scene.toml")
+        << "preset = \"fortini-huang-2015\"\n[beads]\ncount = 50\n[drive]\ngamma = " << gamma
+        << "\nstart = \"abrupt\"\n[time]\nsteps_per_contact = 50\ndiscard = "
+           "0\ncycles = 1\n";
+  };
+  const auto run = [&](const char* output) {
+    return run_program(
+        {"simulate", (folder / "scene.toml").string(), "-q", "-o", (folder / output).string()});
+  };
+  put_scene("1000");
+  std::ofstream(folder / "x.failed.h5") << "mine";
+  const Ran beside = run("x.h5");
+  EXPECT_EQ(beside.code, 1);
+  EXPECT_NE(beside.err.find("overlap"), std::string::npos) << beside.err;
+  EXPECT_NE(beside.err.find("x.failed.h5.twincell-1."), std::string::npos) << beside.err;
+  EXPECT_GT(H5mdReader(folder / "x.failed.h5.twincell-1").n_frames(), 0U);
+  EXPECT_EQ(std::filesystem::file_size(folder / "x.failed.h5"), 4U);
+
+  put_scene("1.5");
+  ASSERT_EQ(run("y.failed.h5").code, 0);
+  const std::size_t whole = H5mdReader(folder / "y.failed.h5").n_frames();
+  put_scene("1000");
+  EXPECT_EQ(run("y.h5").code, 1);
+  EXPECT_EQ(H5mdReader(folder / "y.failed.h5").n_frames(), whole);
+  EXPECT_TRUE(std::filesystem::exists(folder / "y.failed.h5.twincell-1"));
+
+  EXPECT_EQ(run("z.h5").code, 1);
+  EXPECT_EQ(run("z.h5").code, 1);
+  EXPECT_TRUE(std::filesystem::exists(folder / "z.failed.h5"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "z.failed.h5.twincell-1"));
+}
+
 }  // namespace
 }  // namespace twincell::sim
