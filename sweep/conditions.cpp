@@ -13,7 +13,8 @@ namespace {
 using nlohmann::json;
 
 std::optional<double> optional_number(const JsonView& value) {
-  return value.value().is_null() ? std::nullopt : std::optional(value.number());
+  constexpr double kMost = 1e9;  // of N_l and Gamma: far beyond any bed and any shaker
+  return value.value().is_null() ? std::nullopt : std::optional(value.number_in(0, kMost));
 }
 
 }  // namespace

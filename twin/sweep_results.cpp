@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -56,11 +57,51 @@ analysis::BedPhase phase_of(const std::optional<JsonView>& results) {
   return analysis::bed_phase(scalar("s_b"), scalar("s_c"));
 }
 
-/// Refuses results that no run has: a negative s_b or s_c.
+/// Refuses results that no run has: an s_b or s_c that is negative or beyond any bed, an interval whose ends
+/// are exchanged, an unknown phase, and a phase that s_b and s_c contradict.
 void require_possible(const std::optional<JsonView>& results) {
-  for (const char* name : {"s_b", "s_c"})
-    if (const auto value = value_of(results, name); value && !(value->number() >= 0))
-      value->refuse(fmt::format("is {:g}; it cannot be negative", value->number()));
+  constexpr double kMost = 1e7;  // sigma, the farthest position of a bead in a trajectory
+  const auto checked = [&](const char* name) {
+    const auto value = value_of(results, name);
+    if (!value) return std::nan("");
+    const double s = value->number();
+    if (!(s >= 0)) value->refuse(fmt::format("is {:g}; it cannot be negative", s));
+    if (!(s <= kMost)) value->refuse(fmt::format("is {:g}; it cannot be above {:g} (sigma)", s, kMost));
+    if (const auto interval = results->at(name).find("interval"); interval && !interval->value().is_null()) {
+      const auto low = number(*interval, "low"), high = number(*interval, "high");
+      if (low && high && *low > *high)
+        interval->refuse(fmt::format("has low = {:g} above high = {:g}", *low, *high));
+    }
+    return s;
+  };
+  const double s_b = checked("s_b"), s_c = checked("s_c");
+  const auto stated = value_of(results, "phase");
+  if (!stated) return;
+  const std::string word = stated->text();
+  const analysis::BedPhase phase = analysis::phase_named(word);
+  if (word != analysis::phase_name(phase)) {
+    std::string known;
+    for (const auto& row : analysis::kBedPhases)
+      known += fmt::format("{}{}", known.empty() ? "" : ", ", row.word);
+    stated->refuse(fmt::format("'{}' is no phase; phases are: {}", word, known));
+  }
+  const analysis::BedPhase measured = analysis::bed_phase(s_b, s_c);
+  if (measured != analysis::BedPhase::undetermined && phase != measured)
+    stated->refuse(fmt::format("is {}, but s_b = {:g} and s_c = {:g} are those of a bed that is {}", word,
+                               s_b, s_c, analysis::phase_name(measured)));
+}
+
+/// Says how many points of the sweep have no result yet; empty if all have one.
+std::string open_points(const JsonView& document, const fs::path& file) {
+  const auto stated = document.find("open");
+  if (!stated || stated->value().is_null()) return {};
+  const std::int64_t open = stated->integer(0);
+  if (open == 0) return {};
+  return fmt::format(
+      "{}: {} of the {} points of the sweep {} no result yet and {} not drawn; finish it with twincell sweep "
+      "run and collect it again.",
+      file.string(), open, open + static_cast<std::int64_t>(document.at("points").elements().size()),
+      open == 1 ? "has" : "have", open == 1 ? "is" : "are");
 }
 
 void add_points(const JsonView& document, analysis::Comparison& comparison) {
@@ -237,6 +278,7 @@ JsonView read_results(const fs::path& file) {
 std::vector<std::string> add_results(const JsonView& document, const fs::path& file,
                                      analysis::Comparison& comparison) {
   std::vector<std::string> notes;
+  if (std::string open = open_points(document, file); !open.empty()) notes.push_back(std::move(open));
   const std::size_t before = comparison.sweep.size() + comparison.boundaries.size();
   add_points(document, comparison);
   for (const auto& [key, count] : add_onsets(document, comparison))

@@ -14,9 +14,10 @@ namespace twincell::twin {
 /// onsets of bouncing and convecting, at the N_l, Gamma and start that the file states for each
 /// ("conditions"). An onset in another measure of the drive (amplitude, peak velocity, K_m) is converted by
 /// the Gamma of its points.
-/// \returns sentences for the user: onsets without a place in the diagram
-/// \throws InputError if the file has another format, is damaged, or was collected by a
-/// version that did not store the conditions, or if none of its points has a place in the diagram
+/// \returns sentences for the user: points that have no result yet, onsets without a place in the diagram
+/// \throws InputError if the file has another format, is damaged, states a phase that its s_b and s_c
+/// contradict, or was collected by a version that did not store the conditions, or if none of its points has
+/// a place in the diagram
 std::vector<std::string> add_sweep(const std::filesystem::path& file, analysis::Comparison& comparison);
 
 /// All of them.

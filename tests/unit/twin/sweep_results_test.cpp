@@ -100,6 +100,39 @@ TEST(SweepResults, ImpossibleAndRepeatedPointsAreRefused) {
   EXPECT_NE(said(point("a", -0.5)).find("is -0.5; it cannot be negative"), std::string::npos);
 }
 
+TEST(SweepResults, PhasesAndNumbersThatContradictEachOtherAreRefused) {
+  const TemporaryFolder folder;
+  std::vector<std::string> notes;
+  const auto said = [&](const std::string& gamma, const std::string& s_b, const std::string& phase,
+                        int open) {
+    put_file(folder / "r.json",
+             fmt::format(R"({{"format": "twincell sweep 1", "plan": "", "open": {}, "points": [)"
+                         R"({{"id": "a", "conditions": {{"n_l": 20, "gamma": {}, "start": "random"}},)"
+                         R"("results": {{"s_b": {{"value": {}, "interval": {{"low": 0.1, "high": 0.9}}}},)"
+                         R"("s_c": {{"value": 0.25}}, "phase": {{"value": "{}"}}}}}}]}})",
+                         open, gamma, s_b, phase));
+    return complaint_of([&] {
+      analysis::Comparison c;
+      notes = add_sweep(folder / "r.json", c);
+    });
+  };
+  EXPECT_EQ(said("1.5", "0.5", "bouncing", 0), "");
+  EXPECT_TRUE(notes.empty());
+  EXPECT_EQ(said("1.5", "0.01", "co-moving", 0), "");
+  EXPECT_NE(said("-3", "0.5", "bouncing", 0).find("points[0].conditions.gamma"), std::string::npos);
+  EXPECT_NE(said("1.5", "1e300", "bouncing", 0).find("points[0].results.s_b.value: is 1e+300"),
+            std::string::npos);
+  EXPECT_NE(said("1.5", "0.5", "nonsense", 0).find("'nonsense' is no phase; phases are: undetermined, "),
+            std::string::npos);
+  const std::string contradicted = said("1.5", "0.5", "convecting", 0);
+  EXPECT_NE(contradicted.find("points[0].results.phase.value: is convecting, but s_b = 0.5 and s_c = 0.25"),
+            std::string::npos)
+      << contradicted;
+  EXPECT_EQ(said("1.5", "0.5", "bouncing", 1), "");
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("1 of the 2 points of the sweep has no result yet"), std::string::npos) << notes[0];
+}
+
 // A grid over Gamma has no onsets of its own: its points bracket them, for each set of the other axes.
 TEST(SweepResults, PointsOfAGridBracketTheOnsets) {
   std::string points;
