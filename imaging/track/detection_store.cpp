@@ -40,8 +40,10 @@ void DetectionStore::append(std::span<const TrackedBead> beads) {
     const ssize_t wrote = ::pwrite(*file_, data, left, offset);
     if (wrote < 0 && errno == EINTR) continue;
     if (wrote <= 0)
-      throw RunError(fmt::format("{}: writing the beads of frame {} failed: {}.", folder_.string(),
-                                 ends_.size(), std::strerror(errno)));
+      throw RunError(fmt::format(
+          "{}: the temporary file of the located beads in this folder, which is that of "
+          "the output, cannot be written at frame {} ({}).",
+          std::filesystem::weakly_canonical(folder_).string(), ends_.size(), std::strerror(errno)));
     data += wrote;
     offset += wrote;
     left -= static_cast<std::size_t>(wrote);

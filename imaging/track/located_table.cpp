@@ -56,12 +56,13 @@ class Columns {
                      fmt::format("row {}: {}", row + 1, complaint));
   }
 
- private:
+  /// The name of the column of a quantity.
   [[nodiscard]] std::string name_of(const std::string& quantity) const {
     const auto named = renamed_.find(quantity);
     return named == renamed_.end() ? quantity : named->second;
   }
 
+ private:
   const Table& table_;
   const std::map<std::string, std::string>& renamed_;
 };
@@ -150,6 +151,24 @@ class BeadRows {
 
   [[nodiscard]] bool have_errors() const { return sigma_x_ != nullptr && sigma_y_ != nullptr; }
 
+  /// Sentences on standard errors that are not used, without a full stop.
+  [[nodiscard]] std::vector<std::string> doubts_of_errors() const {
+    if (!have_errors()) {
+      if (sigma_x_ == nullptr && sigma_y_ == nullptr) return {};
+      const bool has_x = sigma_x_ != nullptr;
+      return {fmt::format(
+          "the column {} is not used, because there is no column {}: the standard errors of the "
+          "positions are unknown",
+          columns_.name_of(has_x ? "sigma_x" : "sigma_y"), columns_.name_of(has_x ? "sigma_y" : "sigma_x"))};
+    }
+    std::size_t n = 0;
+    for (std::size_t row = 0; row < x_.size(); ++row)
+      if ((*sigma_x_)[row] == 0 || (*sigma_y_)[row] == 0) ++n;
+    if (n == 0) return {};
+    return {fmt::format("{} a standard error of 0, which no position has: the errors of {} are unknown",
+                        plural(n, "row") + (n == 1 ? " has" : " have"), n == 1 ? "this row" : "these rows")};
+  }
+
   /// \throws InputError for numbers out of range
   [[nodiscard]] TrackedBead bead(std::size_t row) const {
     constexpr double kMaxCoordinate = 1e6;  // px
@@ -157,6 +176,12 @@ class BeadRows {
     b.radius_px = radius_ != nullptr     ? (*radius_)[row]
                   : diameter_ != nullptr ? (*diameter_)[row] / 2
                                          : diameter_px_ / 2;
+    constexpr double kSameSize = 0.05;  // of numbers with few digits, as in the other tables of beads
+    if (radius_ != nullptr && diameter_ != nullptr &&
+        !(std::abs(2 * b.radius_px - (*diameter_)[row]) <= kSameSize * (*diameter_)[row]))
+      columns_.refuse(row, "diameter",
+                      fmt::format("the radius is {:g} and the diameter {:g}, which is not twice the radius.",
+                                  b.radius_px, (*diameter_)[row]));
     if (!(std::abs(b.x_px) < kMaxCoordinate))
       columns_.refuse(row, "x", fmt::format("{:g} is not a valid position.", b.x_px));
     if (!(std::abs(b.y_px) < kMaxCoordinate))
@@ -165,6 +190,7 @@ class BeadRows {
     b.sigma_y_px = have_errors() ? (*sigma_y_)[row] : kNaN;
     if (b.sigma_x_px < 0 || b.sigma_y_px < 0)
       columns_.refuse(row, "sigma_x", "a standard error is negative.");
+    if (b.sigma_x_px == 0 || b.sigma_y_px == 0) b.sigma_x_px = b.sigma_y_px = kNaN;  // no position is exact
     const double flag = tracer_ != nullptr ? (*tracer_)[row] : 0;
     if (flag != 0 && flag != 1) columns_.refuse(row, "tracer", fmt::format("{:g} is neither 0 nor 1.", flag));
     b.tracer = flag == 1;
@@ -251,6 +277,7 @@ LocatedTable read_located(const Table& table, const LocatedTableOptions& options
                      "has no column radius or diameter; state the bead diameter (--diameter, px).");
   const BeadRows beads(columns, all.diameter_px);
   all.has_errors = beads.have_errors();
+  all.doubts = beads.doubts_of_errors();
 
   const std::vector<std::size_t> rows = rows_by_frame(numbers, table.file);
   all.range.first = numbers[rows.front()];
@@ -300,6 +327,7 @@ TrackedStack track_located(LocatedTable located, LinkOptions link, const CellDes
   stack.has_errors = located.has_errors;
   stack.range = located.range;
   stack.spacing_doubt = std::move(located.spacing_doubt);
+  stack.settings_doubts.insert(stack.settings_doubts.end(), located.doubts.begin(), located.doubts.end());
   return stack;
 }
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/table.hpp"
 #include "imaging/stack/chosen_frames.hpp"
@@ -25,6 +26,8 @@ struct LocatedTable {
   bool has_picture = false;   ///< its size is stated
   bool has_errors = false;    ///< the table has sigma_x and sigma_y
   std::string spacing_doubt;  ///< a sentence: beads overlap or are listed twice; otherwise empty
+  /// On standard errors that are not used, without a full stop.
+  std::vector<std::string> doubts = {};
 };
 
 /// A user's statements about a table.
@@ -41,11 +44,11 @@ struct LocatedTableOptions {
 bool is_located_table(const std::filesystem::path& name);
 
 /// Reads one bead a row. Columns: `frame`, whole numbers from 0; `x` and `y`, px, y downwards, pixel centres
-/// at whole numbers; optional `radius` or `diameter`, px; `sigma_x` and `sigma_y`, standard errors, px;
-/// `tracer`, 1 or 0. Others are ignored. Rows may have any order.
-/// \param folder as link_detections
-/// \throws InputError naming the row for numbers out of range, more than 10^7 frames, beads outside the
-/// picture, or a table without a size if none is given; ConfigError for columns that are missing or unknown
+/// at whole numbers; optional `radius` or `diameter`, px; `sigma_x` and `sigma_y`, standard errors, px,
+/// unknown where one of them is 0; `tracer`, 1 or 0. Others are ignored. Rows may have any order. \param
+/// folder as link_detections \throws InputError naming the row for numbers out of range, a diameter that is
+/// not twice the radius, more than 10^7 frames, beads outside the picture, or a table without a size if none
+/// is given; ConfigError for columns that are missing or unknown
 LocatedTable read_located(const Table& table, const LocatedTableOptions& options,
                           const std::filesystem::path& folder);
 

@@ -49,6 +49,38 @@ TEST(LocatedTable, SizesErrorsAndTracersAreThoseOfTheTable) {
   EXPECT_FALSE(all.frames[0][2].tracer);
 }
 
+TEST(LocatedTable, ErrorsThatAreNotUsedAreNamed) {
+  const auto read = [](const std::vector<std::string>& names,
+                       const std::vector<std::vector<double>>& columns) {
+    return read_located(table_of(names, columns), {.columns = {}, .diameter_px = 10, .picture = {}}, {});
+  };
+  const LocatedTable one = read({"frame", "x", "y", "sigma_x"}, {{0, 0}, {1, 20}, {1, 1}, {0.1, 0.1}});
+  EXPECT_FALSE(one.has_errors);
+  ASSERT_EQ(one.doubts.size(), 1U);
+  EXPECT_NE(one.doubts[0].find("the column sigma_x is not used, because there is no column sigma_y"),
+            std::string::npos);
+  const LocatedTable exact =
+      read({"frame", "x", "y", "sigma_x", "sigma_y"}, {{0, 0}, {1, 20}, {1, 1}, {0, 0.1}, {0, 0.1}});
+  ASSERT_EQ(exact.doubts.size(), 1U);
+  EXPECT_NE(exact.doubts[0].find("1 row has a standard error of 0"), std::string::npos) << exact.doubts[0];
+  EXPECT_TRUE(std::isnan(exact.frames[0][0].sigma_x_px));
+  EXPECT_EQ(exact.frames[0][1].sigma_x_px, 0.1);
+  EXPECT_TRUE(read({"frame", "x", "y", "sigma_x", "sigma_y"}, {{0}, {1}, {1}, {0.1}, {0.1}}).doubts.empty());
+}
+
+TEST(LocatedTable, ADiameterThatIsNotTwiceTheRadiusIsRefused) {
+  const auto said = [](double diameter) {
+    const Table table = table_of({"frame", "x", "y", "radius", "diameter"}, {{0}, {1}, {1}, {5}, {diameter}});
+    return complaint_of([&] { (void)read_located(table, {}, {}); });
+  };
+  EXPECT_EQ(said(10), "");
+  EXPECT_EQ(said(10.2), "") << "rounded";
+  EXPECT_NE(
+      said(5).find("diameter: row 1: the radius is 5 and the diameter 5, which is not twice the radius."),
+      std::string::npos)
+      << said(5);
+}
+
 TEST(LocatedTable, BeadsThatAreTooCloseForTheirSizeAreDoubtful) {
   const Table table =
       table_of({"frame", "x", "y"}, {{0, 0, 0, 0, 0, 0}, {0, 10, 20, 30, 40, 50}, {0, 0, 0, 0, 0, 0}});
