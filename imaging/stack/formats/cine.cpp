@@ -154,7 +154,7 @@ class Cine final : public RawStack {
     return static_cast<double>(static_cast<std::int64_t>(stamp - trigger_)) * 0x1p-32;
   }
   [[nodiscard]] std::string name(std::uint64_t i) const override {
-    return fmt::format("frame {} (image {})", i + 1, *info_.first_number + static_cast<std::int64_t>(i));
+    return fmt::format("frame {} (image {})", i, *info_.first_number + static_cast<std::int64_t>(i));
   }
   void finish(cv::Mat& frame) const override {
     if (layout_.stored_bits != 10) return;

@@ -177,7 +177,7 @@ class Piped final : public FrameSource {
     return *counted_;
   }
   [[nodiscard]] std::string current() const override {
-    return fmt::format("{}, frame {}", file_.string(), std::max<std::size_t>(read_, 1));
+    return fmt::format("{}, frame {}", file_.string(), read_ > 0 ? read_ - 1 : 0);
   }
   [[nodiscard]] StackInfo info() const override { return info_; }
 

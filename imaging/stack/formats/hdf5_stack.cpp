@@ -76,14 +76,14 @@ class Hdf5Stack final : public FrameSource {
     if (H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) <
             0 ||
         H5Dread(dataset_.get(), memory_type_, in_memory.get(), in_file.get(), H5P_DEFAULT, fresh.data) < 0)
-      refuse(file_, fmt::format("is truncated or damaged: frame {} of {} cannot be read.", read_ + 1, path_));
+      refuse(file_, fmt::format("is truncated or damaged: frame {} of {} cannot be read.", read_, path_));
     frame = fresh;
     ++read_;
     return true;
   }
   [[nodiscard]] std::size_t announced() const override { return shape_[0]; }
   [[nodiscard]] std::string current() const override {
-    return fmt::format("{}:{}, frame {}", file_.string(), path_, std::max<hsize_t>(read_, 1));
+    return fmt::format("{}:{}, frame {}", file_.string(), path_, read_ > 0 ? read_ - 1 : 0);
   }
   [[nodiscard]] StackInfo info() const override { return info_; }
 

@@ -91,6 +91,55 @@ std::uint64_t check_pgm(const fs::path& file, const Bytes& b) {
   return largest;
 }
 
+/// Orientation in an EXIF block, which is a small TIFF file; 1 if it states none.
+std::uint64_t orientation_in_exif(const std::uint8_t* b, std::size_t n) {
+  constexpr std::uint64_t kOrientation = 274, kShort = 3;
+  if (n < 14 || !(b[0] == b[1] && (b[0] == 'I' || b[0] == 'M'))) return 1;
+  const bool big_first = b[0] == 'M';
+  const std::uint64_t at = number_at(b + 4, 4, big_first);
+  if (at > n - 2) return 1;
+  const std::uint64_t entries = number_at(b + at, 2, big_first);
+  for (std::uint64_t i = 0; i < entries; ++i) {
+    const std::uint64_t entry = at + 2 + 12 * i;
+    if (entry + 12 > n) return 1;
+    if (number_at(b + entry, 2, big_first) == kOrientation)
+      return number_at(b + entry + 2, 2, big_first) == kShort ? number_at(b + entry + 8, 2, big_first) : 1;
+  }
+  return 1;
+}
+
+/// Orientation in the EXIF block of a JPEG picture; 1 if it states none.
+std::uint64_t orientation_of_jpeg(const Bytes& b) {
+  constexpr std::string_view kExif("Exif\0\0", 6);
+  for (std::size_t at = 2; at + 4 <= b.size() && b[at] == 0xFF && b[at + 1] != 0xDA;) {
+    const std::size_t length = number_at(&b[at + 2], 2, true);
+    if (b[at + 1] == 0xE1 && length >= 2 + kExif.size() && at + 2 + length <= b.size() &&
+        std::equal(kExif.begin(), kExif.end(), &b[at + 4],
+                   [](char c, std::uint8_t byte) { return static_cast<std::uint8_t>(c) == byte; }))
+      return orientation_in_exif(&b[at + 4 + kExif.size()], length - 2 - kExif.size());
+    at += 2 + length;
+  }
+  return 1;
+}
+
+/// What the chunks of a PNG state beside the picture.
+struct PngExtras {
+  std::uint64_t orientation = 1;  ///< chunk eXIf
+  std::uint64_t frames = 1;       ///< of an animation, chunk acTL
+};
+PngExtras extras_of_png(const Bytes& b) {
+  PngExtras extras;
+  for (std::size_t at = 8; at + 12 <= b.size();) {
+    const std::size_t length = number_at(&b[at], 4, true);
+    if (length > b.size() - at - 12) break;
+    const std::string_view kind(reinterpret_cast<const char*>(&b[at + 4]), 4);
+    if (kind == "eXIf") extras.orientation = orientation_in_exif(&b[at + 8], length);
+    if (kind == "acTL" && length >= 4) extras.frames = number_at(&b[at + 8], 4, true);
+    at += 12 + length;
+  }
+  return extras;
+}
+
 struct Kind {
   std::string_view name, magic;
 };
@@ -112,8 +161,15 @@ class Picture final : public FrameSource {
     const ByteFile in(file);
     const std::string_view kind = kind_of(head_of(file))->name;
     const Bytes bytes = in.bytes(0, in.size(), "the picture");
-    if (kind == "PNG") check_png(file, bytes);
-    if (kind == "JPEG") check_jpeg(file, bytes);
+    PngExtras extras;
+    if (kind == "PNG") {
+      check_png(file, bytes);
+      extras = extras_of_png(bytes);
+    }
+    if (kind == "JPEG") {
+      check_jpeg(file, bytes);
+      extras.orientation = orientation_of_jpeg(bytes);
+    }
     if (kind == "BMP") check_bmp(file, bytes);
     if (kind == "PGM") info_.bits = std::bit_width(check_pgm(file, bytes));
     cv::Mat picture;
@@ -122,7 +178,13 @@ class Picture final : public FrameSource {
     } catch (const cv::Exception&) {  // reported below
     }
     if (picture.empty()) in.refuse(fmt::format("cannot be decoded as a {} picture.", kind));
-    frame_ = grey(picture, file);
+    frame_ = oriented(grey(picture, file), extras.orientation);
+    if (std::string note = orientation_note(extras.orientation); !note.empty())
+      info_.notes.push_back(std::move(note));
+    if (extras.frames > 1)
+      info_.notes.push_back(fmt::format(
+          "the animated PNG has {} frames, of which the first is read; save the frames as single files.",
+          extras.frames));
     info_.format = fmt::format("{} picture, {} bit", kind, 8 * picture.elemSize1());
     info_.width = frame_.cols;
     info_.height = frame_.rows;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <bit>
 #include <cstring>
 #include <opencv2/imgproc.hpp>
@@ -69,6 +70,51 @@ cv::Mat grey(const cv::Mat& picture, const std::filesystem::path& file) {
   cv::Mat real;
   one.convertTo(real, CV_32F);
   return real;
+}
+
+cv::Mat oriented(const cv::Mat& picture, std::uint64_t orientation) {
+  constexpr int kTopToBottom = 0, kLeftToRight = 1, kBoth = -1;
+  if (orientation < 2 || orientation > 8) return picture;
+  cv::Mat shown;
+  if (orientation >= 5)
+    cv::transpose(picture, shown);
+  else
+    shown = picture;
+  switch (orientation) {
+    case 2:
+    case 6:
+      cv::flip(shown, shown, kLeftToRight);
+      break;
+    case 3:
+    case 7:
+      cv::flip(shown, shown, kBoth);
+      break;
+    case 4:
+    case 8:
+      cv::flip(shown, shown, kTopToBottom);
+      break;
+    default:
+      break;
+  }
+  return shown;
+}
+
+std::string orientation_note(std::uint64_t orientation) {
+  constexpr std::array<const char*, 9> kDone = {"",
+                                                "",
+                                                "mirrored left to right",
+                                                "turned by 180 degrees",
+                                                "mirrored top to bottom",
+                                                "transposed",
+                                                "turned by 90 degrees clockwise",
+                                                "transposed about the other diagonal",
+                                                "turned by 90 degrees counter-clockwise"};
+  if (orientation < 2 || orientation > 8) return {};
+  return fmt::format(
+      "the file states orientation {}: the stored picture is {}, as viewers show it; x and y are those of "
+      "the "
+      "picture that is shown.",
+      orientation, kDone[orientation]);
 }
 
 }  // namespace twincell::imaging::frames

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <opencv2/core.hpp>
+#include <string>
 
 namespace twincell::imaging::frames {
 
@@ -36,5 +37,15 @@ void unpack_bits(const std::uint8_t* from, int bits, std::size_t n, std::uint16_
 /// become CV_32F. Colour is read as BGR (BT.601).
 /// \throws InputError naming `file` unless there are 1, 3 or 4 channels
 cv::Mat grey(const cv::Mat& picture, const std::filesystem::path& file);
+
+/// The picture as viewers show it. Cameras and editors that are turned store the pixels as they are, and
+/// beside them how a viewer must turn and mirror them. \param orientation tag 274 of TIFF and EXIF, 1 .. 8
+/// (TIFF 6.0, section 8): 1 as stored, 2 mirrored left to right, 3 turned by 180 degrees, 4 mirrored top to
+/// bottom, 5 transposed, 6 to be turned clockwise, 7 transposed about the other diagonal, 8 to be turned
+/// counter-clockwise; others as 1
+cv::Mat oriented(const cv::Mat& picture, std::uint64_t orientation);
+
+/// Says what oriented() does; empty if nothing.
+std::string orientation_note(std::uint64_t orientation);
 
 }  // namespace twincell::imaging::frames

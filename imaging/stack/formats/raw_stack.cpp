@@ -24,7 +24,7 @@ std::string RawStack::current() const {
 }
 
 std::string RawStack::name(std::uint64_t i) const {
-  return fmt::format("frame {}", i + 1);
+  return fmt::format("frame {}", i);
 }
 
 void RawStack::set_layout(std::uint64_t width, std::uint64_t height, int stored_bits) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <string_view>
 
 #include "imaging/stack/formats/byte_file.hpp"
 #include "imaging/stack/formats/reader.hpp"
@@ -41,7 +42,30 @@ Head head_of(const std::filesystem::path& file) {
   return head;
 }
 
+namespace {
+
+/// Name of a format of pictures that is not read; empty for other files. The video reader would take them for
+/// videos.
+std::string_view unread_picture(const Head& head) {
+  if (head.starts_with("RIFF") && head.starts_with("WEBP", 8)) return "WebP";
+  if (head.starts_with("GIF8")) return "GIF";
+  if (head.starts_with({"\0\0\0\x0cjP  ", 8}) || head.starts_with({"\xff\x4f\xff\x51", 4}))
+    return "JPEG 2000";
+  if (head.starts_with("avif", 8)) return "AVIF";
+  if (head.starts_with("heic", 8) || head.starts_with("mif1", 8)) return "HEIC";
+  for (const std::string_view colour : {"P1", "P3", "P4", "P6"})
+    if (head.starts_with(colour) && head.bytes.size() > 2 && std::isspace(head.bytes[2]) != 0)
+      return colour == "P1" || colour == "P4" ? "PBM" : "PPM";
+  return {};
+}
+
+}  // namespace
+
 const Reader& reader_of(const Head& head) {
+  if (const std::string_view name = unread_picture(head); !name.empty())
+    refuse(head.file, fmt::format("is a {} picture, a format that is not read; save the frames as PNG, TIFF, "
+                                  "JPEG, BMP or PGM.",
+                                  name));
   std::string known;
   for (const Reader* reader : readers()) {
     if (reader->owns(head)) return *reader;

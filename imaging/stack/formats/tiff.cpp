@@ -298,6 +298,7 @@ class Pages final : public FrameSource {
     TIFFOpenOptionsFree(options);
     if (!tiff_) damaged("is not a readable TIFF file");
     read_bits();
+    note_appearance();
   }
 
   bool next(cv::Mat& frame) override {
@@ -306,7 +307,7 @@ class Pages final : public FrameSource {
       damaged(fmt::format("has no readable page {}", read_ + 1));
     ++read_;
     complaint_.clear();
-    frame = page();
+    frame = oriented(page(), field(TIFFTAG_ORIENTATION));
     guard_.check(frame, current());
     return true;
   }
@@ -351,6 +352,27 @@ class Pages final : public FrameSource {
     std::uint16_t largest = 0;  // set only if the file has the tag
     if (TIFFGetField(tiff_.get(), TIFFTAG_MAXSAMPLEVALUE, &largest) == 1 && largest > 0)
       info_.bits = std::min(*info_.bits, static_cast<int>(std::bit_width(std::uint32_t{largest})));
+  }
+
+  /// Notes that the frames are not the pixels as they are stored.
+  void note_appearance() {
+    const std::uint64_t orientation = field(TIFFTAG_ORIENTATION);
+    if (orientation >= 5 && orientation <= 8) std::swap(info_.width, info_.height);
+    if (std::string note = orientation_note(orientation); !note.empty())
+      info_.notes.push_back(std::move(note));
+    std::uint16_t photometric = PHOTOMETRIC_MINISBLACK;
+    TIFFGetField(tiff_.get(), TIFFTAG_PHOTOMETRIC, &photometric);
+    if (photometric == PHOTOMETRIC_MINISWHITE)
+      info_.notes.emplace_back(
+          is_inverted()
+              ? "zero is white in this file (WhiteIsZero): its values are inverted, as viewers show it."
+              : "zero is white in this file (WhiteIsZero), but its values are signed or real numbers "
+                "and are not inverted: bright and dark are exchanged.");
+  }
+  /// Whether the values of a page in which zero is white are inverted: their largest value is known.
+  [[nodiscard]] bool is_inverted() const {
+    return !is_plain() ||
+           (field(TIFFTAG_SAMPLEFORMAT) == SAMPLEFORMAT_UINT && field(TIFFTAG_BITSPERSAMPLE) <= 16);
   }
 
   /// Whether the page stores the values that the camera measured, so that they can be read unchanged.
@@ -415,7 +437,7 @@ class Pages final : public FrameSource {
   }
   // Inverts a picture in which zero is white.
   static cv::Mat upright(const cv::Mat& picture, std::uint64_t photometric, std::uint64_t bits) {
-    if (photometric != PHOTOMETRIC_MINISWHITE || picture.depth() == CV_32F) return picture;
+    if (photometric != PHOTOMETRIC_MINISWHITE || picture.depth() == CV_32F) return picture;  // as is_inverted
     return cv::Scalar::all(static_cast<double>((1U << bits) - 1)) - picture;
   }
   // Pixels as stored on the page, row by row, from strips or tiles.
@@ -458,7 +480,9 @@ class Pages final : public FrameSource {
   // Palettes, 1 to 7 bits, JPEG in TIFF, separate planes: libtiff renders them with 8 bits.
   [[nodiscard]] cv::Mat by_rgba(std::uint32_t width, std::uint32_t height) const {
     std::vector<std::uint32_t> pixels(static_cast<std::size_t>(width) * height);
-    if (TIFFReadRGBAImageOriented(tiff_.get(), width, height, pixels.data(), ORIENTATION_TOPLEFT, 1) != 1)
+    // As the rows are stored: libtiff mirrors, but does not transpose, towards another orientation.
+    const auto stored = static_cast<int>(field(TIFFTAG_ORIENTATION));
+    if (TIFFReadRGBAImageOriented(tiff_.get(), width, height, pixels.data(), stored, 1) != 1)
       damaged(fmt::format("has a page {} of a kind that cannot be read", read_));
     const cv::Mat rgba(static_cast<int>(height), static_cast<int>(width), CV_8UC4, pixels.data());
     cv::Mat one;

@@ -224,7 +224,7 @@ TEST(Cine, TimesRateAndNumbers) {
     ASSERT_TRUE(source->time_s());
     EXPECT_NEAR(*source->time_s(), (i - 2) * 1e-3,
                 1e-9);  // stamps count 2^-32 s, the two lowest bits are flags
-    expect_words(source->current(), {"a.cine", fmt::format("frame {} (image {})", i + 1, i - 2)});
+    expect_words(source->current(), {"a.cine", fmt::format("frame {} (image {})", i, i - 2)});
   }
   put(folder / "b.cine", cine_file({.times = false}, values(12)));
   const auto untimed = open_frames(folder / "b.cine");

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <boost/crc.hpp>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
@@ -30,7 +32,116 @@ cv::Mat pattern(int width, int height, int offset = 0) {
   return m;
 }
 
+/// An EXIF block that states an orientation and nothing else.
+std::string exif(char orientation) {
+  const char block[] = {'I', 'I', 42, 0, 8, 0,           0, 0, 1, 0, 0x12, 0x01, 3,
+                        0,   1,   0,  0, 0, orientation, 0, 0, 0, 0, 0,    0,    0};
+  return {block, sizeof(block)};
+}
+
+/// A chunk of a PNG.
+std::string chunk(const std::string& kind_and_data) {
+  boost::crc_32_type sum;
+  sum.process_bytes(kind_and_data.data(), kind_and_data.size());
+  const auto number = [](std::uint32_t n) {
+    return std::string{static_cast<char>(n >> 24U), static_cast<char>(n >> 16U), static_cast<char>(n >> 8U),
+                       static_cast<char>(n)};
+  };
+  return number(static_cast<std::uint32_t>(kind_and_data.size() - 4)) + kind_and_data +
+         number(sum.checksum());
+}
+
+/// What a viewer shows of a picture with this orientation (TIFF 6.0, section 8).
+cv::Mat shown(const cv::Mat& stored, int orientation) {
+  const auto flipped = [](const cv::Mat& m, int axis) {
+    cv::Mat out;
+    cv::flip(m, out, axis);
+    return out;
+  };
+  const auto turned = [](const cv::Mat& m, int how) {
+    cv::Mat out;
+    cv::rotate(m, out, how);
+    return out;
+  };
+  switch (orientation) {
+    case 2:
+      return flipped(stored, 1);
+    case 3:
+      return turned(stored, cv::ROTATE_180);
+    case 4:
+      return flipped(stored, 0);
+    case 5:
+      return flipped(turned(stored, cv::ROTATE_90_CLOCKWISE), 1);
+    case 6:
+      return turned(stored, cv::ROTATE_90_CLOCKWISE);
+    case 7:
+      return flipped(turned(stored, cv::ROTATE_90_CLOCKWISE), 0);
+    case 8:
+      return turned(stored, cv::ROTATE_90_COUNTERCLOCKWISE);
+    default:
+      return stored;
+  }
+}
+
 }  // namespace
+
+TEST(FrameSource, PicturesAreReadAsViewersShowThem) {
+  const TemporaryFolder folder;
+  write(folder / "a.jpg", pattern<uchar>(24, 17));
+  write(folder / "a.png", pattern<uchar>(24, 17));
+  const std::string jpeg = contents(folder / "a.jpg"), png = contents(folder / "a.png");
+  const cv::Mat of_jpeg = read_all(folder / "a.jpg").at(0), of_png = read_all(folder / "a.png").at(0);
+  EXPECT_TRUE(open_frames(folder / "a.jpg")->info().notes.empty());
+  constexpr std::size_t kAfterHead = 33;  // signature and IHDR
+  for (int k = 1; k <= 8; ++k) {
+    const std::string block = std::string("Exif\0\0", 6) + exif(static_cast<char>(k));
+    const std::string app1 = std::string("\xff\xe1\0", 3) + static_cast<char>(block.size() + 2) + block;
+    put(folder / "o.jpg", jpeg.substr(0, 2) + app1 + jpeg.substr(2));
+    put(folder / "o.png",
+        png.substr(0, kAfterHead) + chunk("eXIf" + exif(static_cast<char>(k))) + png.substr(kAfterHead));
+    for (const auto& [name, stored] : {std::pair{"o.jpg", of_jpeg}, std::pair{"o.png", of_png}}) {
+      const auto source = open_frames(folder / name);
+      cv::Mat frame;
+      ASSERT_TRUE(source->next(frame));
+      EXPECT_TRUE(equal(frame, shown(stored, k))) << name << ", orientation " << k;
+      EXPECT_EQ(source->info().width, frame.cols);
+      ASSERT_EQ(source->info().notes.size(), k == 1 ? 0U : 1U);
+      if (k != 1)
+        expect_words(source->info().notes[0], {fmt::format("orientation {}", k), "as viewers show it"});
+    }
+  }
+  // A block that is cut off states nothing.
+  for (const std::size_t n : {0U, 7U, 13U, 25U}) {
+    put(folder / "o.png",
+        png.substr(0, kAfterHead) + chunk("eXIf" + exif(6).substr(0, n)) + png.substr(kAfterHead));
+    EXPECT_EQ(open_frames(folder / "o.png")->info().notes.size(), n >= 22 ? 1U : 0U) << n;
+  }
+}
+
+TEST(FrameSource, AnAnimatedPngIsOneFrameWithANote) {
+  const TemporaryFolder folder;
+  write(folder / "a.png", pattern<uchar>(24, 17));
+  const std::string png = contents(folder / "a.png");
+  put(folder / "a.png", png.substr(0, 33) + chunk(std::string("acTL\0\0\0\4\0\0\0\0", 12)) + png.substr(33));
+  ASSERT_EQ(open_frames(folder / "a.png")->info().notes.size(), 1U);
+  expect_words(open_frames(folder / "a.png")->info().notes[0],
+               {"animated PNG has 4 frames", "first is read"});
+}
+
+// A video decoder would take them for damaged videos.
+TEST(SpoiltFrames, PicturesOfOtherFormatsAreNamed) {
+  const TemporaryFolder folder;
+  const std::pair<const char*, std::string> heads[] = {
+      {"WebP", std::string("RIFF\x10\0\0\0WEBPVP8 ", 16)},
+      {"GIF", "GIF89a\x01\x02"},
+      {"PPM", "P6\n2 2\n255\n\x01\x02\x03"},
+      {"JPEG 2000", std::string("\0\0\0\x0cjP  \r\n\x87\n", 12)}};
+  for (const auto& [name, head] : heads) {
+    put(folder / "f.dat", head + std::string(64, '\1'));
+    expect_words(refusal(folder / "f.dat"),
+                 {std::string("is a ") + name + " picture", "PNG, TIFF, JPEG, BMP or PGM"});
+  }
+}
 
 TEST(NaturalOrder, SortsNumbersNumerically) {
   EXPECT_TRUE(natural_less("frame_2.png", "frame_10.png"));

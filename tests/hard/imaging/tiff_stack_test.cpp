@@ -84,6 +84,51 @@ TEST(TiffStack, ZeroIsWhite) {
     put(folder / "a.tif", tiff_file({.bits = bits, .photometric = 0}, values(bits)));
     expect_stack(folder / "a.tif", 32, 20, 3, bits,
                  [&](int x, int y, int f) { return ((1U << bits) - 1) - values(bits)(x, y, f); });
+    ASSERT_EQ(open_frames(folder / "a.tif")->info().notes.size(), 1U);
+    expect_words(open_frames(folder / "a.tif")->info().notes[0], {"WhiteIsZero", "are inverted"});
+  }
+}
+
+// Grey pages are copied, palettes and planes of few bits rendered by libtiff, which mirrors by itself.
+TEST(TiffStack, PagesAreReadAsViewersShowThem) {
+  const TemporaryFolder folder;
+  constexpr int kWidth = 24, kHeight = 17;
+  const auto write_page = [&](int bits, int orientation) {
+    TIFF* t = TIFFOpen((folder / "a.tif").c_str(), "w");
+    TIFFSetField(t, TIFFTAG_IMAGEWIDTH, kWidth);
+    TIFFSetField(t, TIFFTAG_IMAGELENGTH, kHeight);
+    TIFFSetField(t, TIFFTAG_BITSPERSAMPLE, bits);
+    TIFFSetField(t, TIFFTAG_SAMPLESPERPIXEL, 1);
+    TIFFSetField(t, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+    TIFFSetField(t, TIFFTAG_ROWSPERSTRIP, kHeight);
+    TIFFSetField(t, TIFFTAG_ORIENTATION, orientation);
+    std::vector<unsigned char> row(static_cast<std::size_t>(kWidth * bits / 8));
+    for (int y = 0; y < kHeight; ++y) {
+      for (std::size_t i = 0; i < row.size(); ++i)
+        row[i] = static_cast<unsigned char>(values(8)(static_cast<int>(i), y, 0));
+      TIFFWriteScanline(t, row.data(), static_cast<std::uint32_t>(y), 0);
+    }
+    TIFFClose(t);
+  };
+  for (const int bits : {8, 4}) {
+    write_page(bits, 1);
+    const cv::Mat stored = read_all(folder / "a.tif").at(0);
+    const std::size_t notes = open_frames(folder / "a.tif")->info().notes.size();
+    const auto turned = [&](int k) {
+      cv::Mat m = stored.clone();
+      if (k >= 5) m = m.t();
+      if (k == 2 || k == 3 || k == 6 || k == 7) cv::flip(m, m, 1);
+      if (k == 3 || k == 4 || k == 7 || k == 8) cv::flip(m, m, 0);
+      return m;
+    };
+    for (int k = 2; k <= 8; ++k) {
+      write_page(bits, k);
+      EXPECT_TRUE(equal(read_all(folder / "a.tif").at(0), turned(k))) << bits << " bits, orientation " << k;
+      const StackInfo info = open_frames(folder / "a.tif")->info();
+      EXPECT_EQ(info.width, k >= 5 ? kHeight : kWidth);
+      ASSERT_EQ(info.notes.size(), notes + 1);
+      expect_words(info.notes.back(), {fmt::format("orientation {}", k)});
+    }
   }
 }
 
