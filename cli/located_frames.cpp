@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cmath>
+#include <cstring>
+#include <fstream>
 #include <utility>
 
 #include "core/error.hpp"
@@ -62,8 +65,17 @@ TableFile& TableFile::operator<<(const std::string& text) {
 
 void TableFile::commit() {
   if (!path_) return;
+  errno = 0;
   out_.close();
-  if (!out_) throw RunError(name_ + ": cannot be written.");
+  if (!out_) {
+    // A write that failed before has no error number any more; a further one fails for the same reason.
+    if (errno == 0) {
+      std::ofstream again(path_->part(), std::ios::app);
+      again << std::string(1 << 16, ' ') << std::flush;
+    }
+    throw RunError(errno == 0 ? name_ + ": cannot be written."
+                              : fmt::format("{}: cannot be written ({}).", name_, std::strerror(errno)));
+  }
   path_->commit();
 }
 

@@ -162,13 +162,18 @@ std::pair<nlohmann::json, std::string> make(const Reproducible& what, const Repr
   if (stored) {
     // What was run is what the document says; its verdicts and figures alone are new.
     const auto keep = [&](const char* key, auto& member) {
-      if (stored->contains(key)) member = stored->at(key).get<std::decay_t<decltype(member)>>();
+      try {
+        if (stored->contains(key)) member = stored->at(key).get<std::decay_t<decltype(member)>>();
+      } catch (const nlohmann::json::exception&) {
+        throw InputError({from.string(), 0, 0, key}, "is of another type than `reproduce` writes.");
+      }
     };
     keep("conditions", r.conditions);
     keep("cheaper", r.cheaper);
     keep("complete", r.complete);
     keep("runs", r.runs);
-    core_minutes = stored->value("core_minutes", std::numeric_limits<double>::quiet_NaN());
+    core_minutes = std::numeric_limits<double>::quiet_NaN();
+    keep("core_minutes", core_minutes);
   }
   for (Target& t : r.targets)
     if (t.runs.empty() && t.verdict != reproduce::Verdict::absent) t.runs = r.runs;
@@ -275,13 +280,18 @@ void run_all(const ReproduceOptions& options, const Common& common) {
       document = make(what, options, on_device, shares.at(what.name), folder / what.name, from, common).first;
     nlohmann::json& counts = summary["figures"][what.name];
     for (const auto& verdict : reproduce::kVerdicts) counts[std::string(verdict.word)] = 0;
-    for (const auto& t : document["targets"]) {
-      if (!t.value("not_counted", "").empty()) continue;
-      nlohmann::json& n = counts[t["verdict"].get<std::string>()];
-      n = n.is_null() ? 1 : n.get<int>() + 1;
+    try {
+      for (const auto& t : document.at("targets")) {
+        if (!t.value("not_counted", "").empty()) continue;
+        nlohmann::json& n = counts[t.at("verdict").get<std::string>()];
+        n = n.is_null() ? 1 : n.get<int>() + 1;
+      }
+      documents.push_back({what.name, json_text(document), what.judges_again});
+      write_page();  // after every figure, so that an interrupted call leaves a page
+    } catch (const nlohmann::json::exception&) {
+      if (from.empty()) throw;
+      throw InputError({from.string(), 0, 0, "targets"}, "is not as `reproduce` writes it.");
     }
-    documents.push_back({what.name, json_text(document), what.judges_again});
-    write_page();  // after every figure, so that an interrupted call leaves a page
   }
   std::string text;
   for (const auto& [name, counts] : summary["figures"].items()) {

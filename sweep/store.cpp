@@ -78,6 +78,15 @@ void storing(const fs::path& folder, Work work) {
   }
 }
 
+/// Whether a folder `points` holds points of a sweep. Folders of earlier versions have no manifest.
+bool holds_points(const fs::path& points) {
+  std::error_code ec, ignored;
+  for (fs::directory_iterator at(points, ec), end; !ec && at != end; at.increment(ec))
+    if (fs::exists(at->path() / "point.json", ignored) || fs::exists(at->path() / "result.json", ignored))
+      return true;
+  return false;
+}
+
 }  // namespace
 
 Claim::Claim(Claim&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
@@ -91,9 +100,8 @@ Claim::~Claim() {
 
 Store::Store(fs::path folder, Access access) : folder_(std::move(folder)) {
   if (access == Access::read) return;
-  // Folders of earlier versions have no manifest; their folder `points` identifies them.
   std::error_code ec;
-  if (!fs::is_directory(folder_ / "points", ec)) claim_shared_folder(folder_, Product::runs());
+  if (!holds_points(folder_ / "points")) claim_shared_folder(folder_, Product::runs());
   fs::create_directory(folder_ / "points", ec);
   if (ec || ::access((folder_ / "points").c_str(), R_OK | W_OK | X_OK) != 0)
     throw ConfigError({folder_.string(), 0, 0, ""},

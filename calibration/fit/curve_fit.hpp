@@ -4,6 +4,7 @@
 /// with intervals, and tests of the fit.
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,8 +25,8 @@ struct DataPoint {
 
 /// Window of the abscissa, both ends included.
 struct FitWindow {
-  double low = -1e300;
-  double high = 1e300;
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
 };
 
 /// Whether a point was used, and if not, why.

@@ -211,7 +211,7 @@ void read_contact(const Section& s, Scene& scene, Voids& voids) {
   c.normal = s.word("normal", normal_words()).value_or(c.normal);
   c.tangential = s.word("tangential", tangential_words()).value_or(c.tangential);
   c.rolling = s.word("rolling", rolling_words()).value_or(c.rolling);
-  scene.overlap_bound = s.number_in("overlap_bound", 0, 0.5, true).value_or(scene.overlap_bound);
+  scene.overlap_bound = s.number_in("overlap_bound", 1e-6, 0.5).value_or(scene.overlap_bound);
 
   const Section walls = s.section("wall");
   const auto only_numbers = [&](const Section& table) {

@@ -369,6 +369,10 @@ Start from_table(const Scene& scene, Progress& progress) {
   if (!table)
     throw InputError({scene.from.string(), 0, 0, ""},
                      "the table is empty; its first line names the columns.");
+  if (start.beads.empty())
+    throw InputError(
+        {scene.from.string(), 0, 0, ""},
+        "the table has no bead: a row for each one must follow the line that names the columns.");
   require_count(scene, start.beads.size(), scene.from.string());
   refuse_void_sizes(scene, start.beads, table->has(&Bead::radius), table->has(&Bead::mass),
                     scene.from.string());

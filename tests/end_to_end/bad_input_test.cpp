@@ -127,10 +127,14 @@ TEST_F(BadInput, NumbersThatNoFitCanHold) {
   for (const char* law : {"line", "constant", "exponential"})
     expect_refusal({"fit", at("huge.csv"), "--law", law, "-o", at("fit")}, kInput,
                    {"huge.csv", "1e+308", "1e+150"});
+  // Without a window no point is outside of it.
+  write(at("far.csv"), "x,y\n1e308,1\n2e307,4\n3,6\n4,8\n");
+  expect_refusal({"fit", at("far.csv"), "--law", "line", "-o", at("fit")}, kInput,
+                 {"far.csv", "1e+308", "1e+150"});
   write(at("tiny.csv"), "x,y\n1,1e-200\n2,2.1e-200\n3,2.9e-200\n4,4e-200\n");
   expect_refusal({"fit", at("tiny.csv"), "--law", "line", "-o", at("fit")}, kInput,
                  {"tiny.csv", "no y is larger than 4e-200"});
-  expect_only({"huge.csv", "tiny.csv"});
+  expect_only({"far.csv", "huge.csv", "tiny.csv"});
 }
 
 TEST_F(BadInput, Trajectories) {

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -267,6 +268,32 @@ TEST(Outputs, CollectedResultsMayBeNamedByTheirTable) {
   std::getline(std::ifstream("r.json") >> std::ws, json);
   EXPECT_EQ(table.rfind("id,", 0), 0U) << table;
   EXPECT_EQ(json, "{");
+}
+
+/// Runs the program under a limit of a resource, which it inherits.
+Ran run_limited(decltype(RLIMIT_AS) resource, rlim_t most, const std::vector<std::string>& words) {
+  rlimit usual{};
+  EXPECT_EQ(::getrlimit(resource, &usual), 0);
+  const rlimit limit{most, usual.rlim_max};
+  std::signal(SIGXFSZ, SIG_IGN);  // inherited: a write beyond the limit is an error, as on a full disk
+  ::setrlimit(resource, &limit);
+  RunningProgram program(words);
+  ::setrlimit(resource, &usual);
+  std::signal(SIGXFSZ, SIG_DFL);
+  return program.wait();
+}
+
+TEST(Outputs, TheCauseOfAFailureToWriteIsReported) {
+  const Sandbox sandbox;
+  const Ran table = run_limited(RLIMIT_FSIZE, 20'000, {"locate", "frames", "-o", "b.csv", "-q"});
+  EXPECT_EQ(table.code, 1);
+  EXPECT_NE(table.err.find("b.csv: cannot be written (File too large)."), std::string::npos) << table.err;
+  const Ran track = run_limited(RLIMIT_FSIZE, 20'000,
+                                {"track", "frames", "--cell", "frames/CELL.toml", "-o", "t.h5", "-q"});
+  EXPECT_EQ(track.code, 1);
+  EXPECT_NE(track.err.find(fs::current_path().string() + ": the temporary file of the located beads"),
+            std::string::npos)
+      << track.err;
 }
 
 TEST(Outputs, AFullDiskUnderTheHelpIsReported) {

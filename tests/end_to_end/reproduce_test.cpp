@@ -186,6 +186,16 @@ TEST(Reproduce, StoredRunsAreJudgedAgainWithoutASimulation) {
   EXPECT_EQ(bad.code, 3) << bad.err;
   EXPECT_NE(bad.err.find("bad.json"), std::string::npos) << bad.err;
   EXPECT_EQ(run_program({"reproduce", "p1-table1", "--stored", stored, "-q", "-o", folder / "z"}).code, 2);
+  // A key of another type is named.
+  for (const char* key : {"conditions", "cheaper", "complete", "runs", "core_minutes"}) {
+    nlohmann::json other = fig4;
+    other[key] = {{"a", 1}};
+    std::ofstream(folder / "other.json") << other.dump();
+    const Ran named =
+        run_program({"reproduce", "p1-fig4", "--stored", folder / "other.json", "-q", "-o", folder / "w"});
+    EXPECT_EQ(named.code, 3) << key << ": " << named.err;
+    EXPECT_NE(named.err.find(std::string("other.json: ") + key + ": "), std::string::npos) << named.err;
+  }
 }
 
 TEST(Reproduce, AllOfAFolderBecomesThePageOnThePapers) {

@@ -1,9 +1,12 @@
 // Reads trajectories from H5MD.
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "core/config.hpp"
@@ -108,6 +111,8 @@ void H5mdReader::Impl::open() {
   std::error_code ec;
   if (!fs::exists(path, ec)) refuse("", "the file does not exist.");
   if (fs::is_directory(path, ec)) refuse("", "this is a folder; a trajectory file is needed.");
+  if (::access(path.c_str(), R_OK) != 0)
+    refuse("", fmt::format("the file cannot be read ({}).", std::strerror(errno)));
   file = h5::Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
   if (!file)
     refuse("", H5Fis_hdf5(path.c_str()) > 0 ? "the HDF5 file is truncated or damaged."

@@ -139,6 +139,11 @@ TEST(Scene, NumbersOutOfRangeAreRefused) {
               std::string::npos)
         << said;
   }
+  // Smaller bounds leave collisions without a velocity at which the step can be found.
+  EXPECT_EQ(complaint(kGood, {"contact.overlap_bound=1e-6"}), "accepted");
+  EXPECT_NE(
+      complaint(kGood, {"contact.overlap_bound=9e-7"}).find("contact.overlap_bound: 9e-07 is out of range"),
+      std::string::npos);
   EXPECT_NE(complaint(kGood, {"beads.count=-1"}).find("beads.count: -1 is out of range"), std::string::npos);
   EXPECT_NE(complaint(kGood, {"cell.gravity=[0, nan]"}).find("cell.gravity: a list of 2 numbers"),
             std::string::npos);

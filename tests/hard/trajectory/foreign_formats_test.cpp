@@ -539,11 +539,10 @@ TEST_F(ForeignFormats, ColumnsOfATableThatAreNotReadAreNamed) {
   };
   EXPECT_EQ(said(",mass,ecc,step"), "") << "of trackpy and of export";
   EXPECT_EQ(said(",mass,spin,step"), "a column of the table is not read: 'spin'.");
-  EXPECT_EQ(
-      said(",radius_mm,time_ms,spin"),
-      "3 columns of the table are not read: 'radius_mm', 'time_ms', 'spin'. --columns radius=radius_mm "
-      "time=time_ms reads them without a conversion of units; lengths and times of a table have one "
-      "unit each.");
+  EXPECT_EQ(said(",radius_mm,time_ms,spin"),
+            "3 columns of the table are not read: 'radius_mm', 'time_ms', 'spin'. --columns radius=radius_mm "
+            "time=time_ms reads them without a conversion of units; lengths and times of a table have one "
+            "unit each.");
   EXPECT_EQ(refusal("csv", "frame,particle,x,y,radius\n0,0,1,-1,-0.3\n"),
             "f:2: the radius is -0.3; it must be above 0.");
   EXPECT_EQ(refusal("csv", "frame,particle,x,y,diameter\n0,0,1,-1,-0.6\n"),

@@ -572,7 +572,6 @@ TEST(BeadTable, HoldsWhatItNames) {
   EXPECT_EQ(Vec3(b.spin_x, b.spin_z, b.mass), Vec3(7, 8, 9));
   EXPECT_EQ(make_start(table.scene_of("x,z\n1,2", kSpace, {"beads.count=1"})).beads[0].y,
             2.5);  // the middle of the gap
-  EXPECT_EQ(make_start(table.scene_of("x,z\n")).beads.size(), 0U);
 }
 
 // 2 mm and 9.81 m/s^2: v0 = 140.07 mm/s, t0 = 14.278 ms.
@@ -609,6 +608,7 @@ TEST(BeadTable, BadRowsAreNamed) {
     expect_says(complaint([&] { make_start(table.scene_of(text)); }), table.file + wanted);
   };
   expect_refused("", ": the table is empty");
+  expect_refused("x,z\n", ": the table has no bead");
   expect_refused("x,vx\n1,2\n", ":1: z: the column is missing");
   expect_refused("x,z,colour\n1,2,3\n", ":1:5: colour: there is no such column");
   expect_refused("x,z,x\n1,2,3\n", ":1:5: x: the column occurs twice");

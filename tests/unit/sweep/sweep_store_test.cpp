@@ -54,6 +54,13 @@ TEST(SweepStore, OnlyASweepsFolderIsWrittenInto) {
   put_file(folder / "thesis/a.tex", "mine");
   EXPECT_THROW(Store(folder / "thesis"), ConfigError);
   EXPECT_FALSE(std::filesystem::exists(folder / "thesis/points"));
+  // A folder of that name is no sign of a sweep; a point in it is.
+  std::filesystem::create_directory(folder / "thesis/points");
+  EXPECT_THROW(Store(folder / "thesis"), ConfigError);
+  EXPECT_FALSE(std::filesystem::exists(folder / "thesis/twincell-manifest.json"));
+  std::filesystem::create_directories(folder / "former/points/a");
+  put_file(folder / "former/points/a/point.json", "{}");
+  EXPECT_NO_THROW(Store(folder / "former"));
   const Store first(folder / "sweep");
   EXPECT_NO_THROW(Store(folder / "sweep"));
   EXPECT_NO_THROW(Store(folder / "thesis", Store::Access::read));
