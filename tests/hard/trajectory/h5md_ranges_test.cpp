@@ -2,12 +2,18 @@
 // refuses them and names file and dataset.
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 
+#include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
+#include "tests/support/complaint.hpp"
 #include "tests/support/hdf5_elsewhere.hpp"
 #include "tests/support/program.hpp"
 #include "trajectory/formats/h5md_file.hpp"
@@ -141,6 +147,29 @@ TEST(H5mdRanges, AnUnknownAxisIsNoIndex) {
     h5::write_attribute(drive, "axis", std::string("q"));
   });
   expect_refused(file, "axis");
+}
+
+TEST(H5mdRanges, AFileThatMayNotBeReadIsNoDamagedOne) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "a.h5", answer = folder / "answer";
+  {
+    H5mdWriter writer(file, TrajectoryInfo{.n_beads = 0});
+    writer.finish();
+  }
+  std::filesystem::permissions(file, std::filesystem::perms::none);
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
+  const pid_t child = ::fork();
+  if (child == 0) {  // root may read everything
+    constexpr uid_t kOther = 65534;
+    const bool other = ::geteuid() != 0 || ::setresuid(kOther, kOther, kOther) == 0;
+    std::ofstream(answer) << (other ? complaint_of([&] { const H5mdReader reader(file); }) : "unable")
+                          << std::flush;
+    ::_exit(0);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  const std::string said = read_text_file(answer);
+  EXPECT_NE(said.find("a.h5: the file cannot be read (Permission denied)."), std::string::npos) << said;
 }
 
 TEST(H5mdRanges, StatedSizesMatchFileContent) {
