@@ -319,9 +319,9 @@ TEST_F(DemoFilm, AScaleThatTheBeadsContradictIsRefused) {
     EXPECT_EQ(track({"--frames", ":10", "--pixels-per-sigma", scale}).code, 0) << scale;
   const Ran other = track({"--frames", ":10", "--pixels-per-sigma", "24", "--diameter", "12"});
   EXPECT_EQ(other.code, 0) << other.err;
-  EXPECT_NE(
-      other.err.find("sigma is 24 px (camera.pixels_per_sigma), but the beads are 12 px wide: 0.5 sigma"),
-      std::string::npos)
+  EXPECT_NE(other.err.find("a bead of one sigma is 24 px wide (camera.pixels_per_sigma), but the discs are "
+                           "12 px wide: 0.5 sigma"),
+            std::string::npos)
       << other.err;
 }
 

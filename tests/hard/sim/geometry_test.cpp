@@ -193,7 +193,7 @@ TEST(Input, InvalidBeadsAreRefusedByName) {
                               "scene.toml: start: ", "bead 0 moves", "sigma in one step");
   expect_refusal<ConfigError>([&] { Simulation(t.scene("x,z\n5,3\n", {"cell.height=2"})); },
                               "bead 0 reached the height of the cell, 2 sigma above the plate");
-  EXPECT_EQ(Simulation(t.scene("x,z\n", {"drive.amplitude=0.5"})).system().beads.size(), 0U);
+  expect_refusal<InputError>([&] { Simulation(t.scene("x,z\n", {"drive.amplitude=0.5"})); }, "has no bead");
 }
 
 TEST(Lists, BedThatMovesWithItsPlateKeepsItsList) {
