@@ -48,9 +48,9 @@ class TableReader final : public PictureBeadsReader {
   /// Says which columns are not read, and which of these look like a quantity with a unit in its name.
   /// Columns of trackpy, of `locate` and of `export` that no trajectory holds are ignored without a word.
   void note_ignored(const std::vector<std::string>& names) {
-    constexpr std::array<std::string_view, 17> kKnown = {
-        "mass",      "size",  "ecc",  "signal",       "raw_mass", "ep",      "step", "phase", "cycle",
-        "ambiguous", "score", "edge", "sigma_radius", "index",    "level_0", "id",   ""};
+    constexpr std::array<std::string_view, 18> kKnown = {
+        "mass",      "size",  "ecc",  "signal",  "raw_mass",     "ep",    "step",    "phase", "cycle",
+        "ambiguous", "score", "edge", "overlap", "sigma_radius", "index", "level_0", "id",    ""};
     std::vector<std::string> ignored, with_unit;
     for (std::size_t k = 0; k < names.size(); ++k) {
       if (twin_ == k || std::find(at_.begin(), at_.end(), std::optional(k)) != at_.end()) continue;

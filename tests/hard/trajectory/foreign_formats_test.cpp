@@ -537,7 +537,7 @@ TEST_F(ForeignFormats, ColumnsOfATableThatAreNotReadAreNamed) {
     put_file(file(), "frame,particle,x,y" + columns + "\n0,0,1,-1,2,5,0\n1,0,1,-1,2,5,100\n");
     return ForeignTrajectory(file(), foreign_format("csv", ""), {.timestep = 1}).assumption();
   };
-  EXPECT_EQ(said(",mass,ecc,step"), "") << "of trackpy and of export";
+  EXPECT_EQ(said(",mass,overlap,step"), "") << "of trackpy and of export";
   EXPECT_EQ(said(",mass,spin,step"), "a column of the table is not read: 'spin'.");
   EXPECT_EQ(said(",radius_mm,time_ms,spin"),
             "3 columns of the table are not read: 'radius_mm', 'time_ms', 'spin'. --columns radius=radius_mm "
