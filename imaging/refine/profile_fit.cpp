@@ -258,6 +258,7 @@ class ProfileFit {
     constexpr double kFirstStep = 0.125, kLastStep = 0.06;  // R
     constexpr double kMinShift = 0.04, kMaxShift = 0.5;     // R: less is no highlight, more another disc
     constexpr double kBetter = 0.75;                        // of the squares of the residuals at the rims
+    constexpr double kMinMisfit = 1e-3;                     // mean square at the rims; highlights leave 4e-3
     constexpr int kSpotRounds = 2, kSpotSweeps = 2;
     std::vector<Detection> before = beads_;
     const DiscProfile profile_before = shared_;
@@ -268,6 +269,11 @@ class ProfileFit {
       return squares_at_rims();
     };
     const double first = squares_at({});
+    if (first < kMinMisfit) {
+      shared_ = profile_before;
+      render();
+      return;
+    }
     double least = first;
     cv::Point2d shift;
     for (double step = kFirstStep * radius_; step > kLastStep * radius_; step *= 0.5)
@@ -510,20 +516,21 @@ class ProfileFit {
     render();
   }
 
-  /// Sum of the squares of the residuals at the rims, outside of any highlight.
+  /// Mean square of the residuals at the rims, outside of any highlight.
   [[nodiscard]] double squares_at_rims() const {
     constexpr double kInner = 0.85;  // R
-    double squares = 0;
+    double squares = 0, n = 0;
     for (const Detection& b : beads_) {
       if (b.score < kMinScore) continue;
       over(b, [&](int x, int y, double r) {
         if (r * radius_ < kInner * radius_ * b.radius) return;
+        ++n;
         const double left = std::clamp(
             static_cast<double>(image_.darkness(y, x)) - static_cast<double>(model_(y, x)), -huber_, huber_);
         squares += left * left;
       });
     }
-    return squares;
+    return n > 0 ? squares / n : 0;
   }
 
   /// By what the correlation of the residuals enlarges the variances of the centres. Only discs that lie in

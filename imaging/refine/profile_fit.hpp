@@ -11,9 +11,10 @@
 /// squares to all well-explained discs together, with their neighbours included. Residuals beyond Huber's
 /// bound have reduced weight.
 ///
-/// Highlights beside the middle of the discs attract all centres by the same vector. If another place of the
-/// centres lowers the squares of the residuals at r > 0.85 R by a quarter, the model has a second term
-/// a_k t((x, y) - c_k), a common picture of the inside (r < 0.9 R), and the centres are those of the rims.
+/// Highlights beside the middle of the discs attract all centres by the same vector. If the mean square of
+/// the residuals at r > 0.85 R is above 0.001, and another place of the centres lowers it by a quarter, the
+/// model has a second term a_k t((x, y) - c_k), a common picture of the inside (r < 0.9 R), and the centres
+/// are those of the rims.
 ///
 /// When not to use: plain discs, for which picture_fit.hpp is as good and ten times faster; discs that look
 /// different from each other (edge_fit.hpp).
