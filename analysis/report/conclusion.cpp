@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "analysis/runs/onset_agreement.hpp"
+#include "core/plural.hpp"
 
 namespace twincell::analysis {
 
@@ -64,7 +65,7 @@ std::string real_differences(const Comparison& c) {
 }
 
 std::string conclusion_of_sweep(const Comparison& c) {
-  std::string text = fmt::format("The diagram shows {} points of a sweep.", c.sweep.size());
+  std::string text = fmt::format("The diagram shows {} of a sweep.", plural(c.sweep.size(), "point"));
   for (const PhaseBoundary& b : c.boundaries)
     text += fmt::format(" Onset of {} ({}, N_l = {:.3g}): Gamma {}.", onset_name(b.onset), boundary_of(b),
                         b.n_l, boundary_text(b));

@@ -63,17 +63,17 @@ std::optional<std::string> check_beads_at_scale(FramesAhead& frames, const Locat
   } catch (const NoDiscs&) {
     return {};
   }
-  const double share = covered(locate(*first, found).beads) / covered(stated.beads);
+  const double by_stated = covered(stated.beads), by_found = covered(locate(*first, found).beads);
   if (const std::string sizes = sizes_that_differ(found, scale); !sizes.empty()) {
     // A wrong size found inside large beads covers less than they do.
-    if (share < kNoLess) return {};
+    if (by_found < kNoLess * by_stated) return {};
     throw ConfigError(
         {.file = cell.file, .key = cell.key},
         fmt::format("is {:g}, but the beads in the frames are {} px wide, and sigma is the bead diameter; "
                     "correct the scale, or state the diameter of the beads (--diameter).",
                     scale, sizes));
   }
-  if (share < kMore) return {};
+  if (by_found <= kMore * by_stated) return {};
   if (found.preprocess.bright && !given.preprocess.bright)
     throw ConfigError({.file = cell.file, .key = "camera.bright"},
                       "is absent or false, but the beads in the frames are brighter than their surroundings; "
