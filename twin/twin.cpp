@@ -171,34 +171,30 @@ void require_agreement(const calibration::DriveCheck& check, const TwinOptions& 
                       check.disagreement + "; correct one of them, or use --trust-stated-drive.");
 }
 
-/// \throws ConfigError if the bed cannot lie in the cell that is stated
-void require_bed_in_cell(const calibration::TrackedFilm& film, const TwinOptions& options) {
-  // A part of the picture need not show the beads at the walls.
-  const imaging::LocatingRequest& part = options.film.locating;
-  if (options.trust_stated_cell || !part.roi.empty() || !part.mask.empty()) return;
+/// How the bed lies in the cell that is stated. \returns doubts, in sentences
+/// \throws ConfigError if it cannot lie there
+std::vector<std::string> check_bed_in_cell(const calibration::TrackedFilm& film, const TwinOptions& options) {
   struct Nowhere : TrajectorySink {
     void append(const Frame& /*frame*/) override {}
   } nowhere;
   imaging::BedInCell watched(nowhere, film.plan.info, film.cell, film.stack.height_px);
   imaging::write_trajectory(film.stack, film.plan, watched);
-  if (const std::string contradiction = watched.contradiction(); !contradiction.empty())
+  // A part of the picture need not show the beads at the walls.
+  const imaging::LocatingRequest& part = options.film.locating;
+  const std::string contradiction = watched.contradiction();
+  if (!contradiction.empty() && !options.trust_stated_cell && part.roi.empty() && part.mask.empty())
     throw ConfigError({.file = options.cell_file(), .key = "cell"},
                       contradiction + "; correct it, or use --trust-stated-cell.");
+  return watched.doubts();
 }
 
-/// Writes the tracked film into `output`. \returns the doubts about it, in sentences
-std::vector<std::string> write_experiment(calibration::TrackedFilm& film, const fs::path& output,
-                                          const TwinProvenance& provenance) {
+/// Writes the tracked film into `output`.
+void write_experiment(calibration::TrackedFilm& film, const fs::path& output,
+                      const TwinProvenance& provenance) {
   film.plan.info.provenance_json = provenance.of_experiment(film.cell);
   H5mdWriter writer(output, film.plan.info);
-  imaging::BedInCell watched(writer, film.plan.info, film.cell, film.stack.height_px);
-  imaging::write_trajectory(film.stack, film.plan, watched);
+  imaging::write_trajectory(film.stack, film.plan, writer);
   writer.finish();
-  std::vector<std::string> doubts = film.stack.doubts(film.cell);
-  if (std::string left_out = film.plan.in_plate_note(); !left_out.empty())
-    doubts.push_back(std::move(left_out));
-  for (const std::string& doubt : watched.doubts()) doubts.push_back(doubt);
-  return doubts;
 }
 
 /// Simulates the scene once from the measured positions, and `options.twins` - 1 times from shifted ones.
@@ -303,9 +299,13 @@ Twin make_twin(const TwinOptions& options, const fs::path& folder, const TwinPro
   calibration::TrackedFilm film =
       calibration::track_filmed_cell(open, std::move(filmed), std::move(check), of_film, progress);
   require_agreement(film.check, options);
-  require_bed_in_cell(film, options);
+  const std::vector<std::string> of_bed = check_bed_in_cell(film, options);
   film.cell.phase_lock.frames_per_cycle = film.stack.phases.frames_per_cycle;
-  twin.doubts = write_experiment(film, twin.experiment, provenance);
+  write_experiment(film, twin.experiment, provenance);
+  twin.doubts = film.stack.doubts(film.cell);
+  if (std::string left_out = film.plan.in_plate_note(); !left_out.empty())
+    twin.doubts.push_back(std::move(left_out));
+  twin.doubts.insert(twin.doubts.end(), of_bed.begin(), of_bed.end());
   twin.phases = film.stack.phases;
   twin.pixels_per_sigma = film.plan.pixel_frame.pixels_per_sigma;
   const FirstPacking first = find_first_packing(H5mdReader(twin.experiment));

@@ -67,7 +67,9 @@ struct Twin {
 
 /// Scene of the twin as TOML: `base` (text of a scene, or empty) with width, sides, drive and scale of the
 /// cell. It starts from frame `frame` of `experiment` and lasts `cycles` cycles with the cell's number of
-/// phases. \param assignments "section.key=value", which override all of these
+/// phases.
+///
+/// \param assignments "section.key=value", which override all of these
 /// \throws ConfigError for open sides, or a scale that differs from that of the cell
 /// \pre the cell states width and drive
 std::string twin_scene(const std::string& base, const std::string& base_name,

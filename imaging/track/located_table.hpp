@@ -45,10 +45,12 @@ bool is_located_table(const std::filesystem::path& name);
 
 /// Reads one bead a row. Columns: `frame`, whole numbers from 0; `x` and `y`, px, y downwards, pixel centres
 /// at whole numbers; optional `radius` or `diameter`, px; `sigma_x` and `sigma_y`, standard errors, px,
-/// unknown where one of them is 0; `tracer`, 1 or 0. Others are ignored. Rows may have any order. \param
-/// folder as link_detections \throws InputError naming the row for numbers out of range, a diameter that is
-/// not twice the radius, more than 10^7 frames, beads outside the picture, or a table without a size if none
-/// is given; ConfigError for columns that are missing or unknown
+/// unknown where one of them is 0; `tracer`, 1 or 0. Others are ignored. Rows may have any order.
+///
+/// \param folder as link_detections
+/// \throws InputError naming the row for numbers out of range, a diameter that is not twice the radius,
+/// more than 10^7 frames, beads outside the picture, or a table without a size if none is given;
+/// ConfigError for columns that are missing or unknown
 LocatedTable read_located(const Table& table, const LocatedTableOptions& options,
                           const std::filesystem::path& folder);
 

@@ -97,8 +97,7 @@ void warn_of_lost_energy(const Scene& s, const Plan& plan, std::vector<std::stri
   if (!conserves || plan.event_driven || !plan.locate || s.steps_per_contact >= kManyStepsPerContact) return;
   warnings.push_back(fmt::format(
       "no contact dissipates energy, but the steps of \"{}\" with time.steps_per_contact = {:g} take a "
-      "little "
-      "away in each collision, which adds up in long runs; set time.steps_per_contact = {:g}, "
+      "little away in each collision, which adds up in long runs; set time.steps_per_contact = {:g}, "
       "time.integrator = \"verlet\" or, where the scene permits it, time.stepping = \"event-driven\".",
       s.integrator, s.steps_per_contact, kManyStepsPerContact));
 }

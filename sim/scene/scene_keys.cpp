@@ -387,8 +387,7 @@ void add_start_and_time(Rows& rows) {
        "tangential force, and time.springs is true unless stated"},
       {"time.samples", "", "400; two per phase with event-driven motion", "200",
        "samples per cycle for averages over time (granular temperature, with contacts also forces), rounded "
-       "to an "
-       "even number in each phase; 0: none"},
+       "to an even number in each phase; 0: none"},
       {"until.quantity", "", "", "\"T_z\"",
        "the mean that is to be determined: \"T_x\", \"T_y\", \"T_z\", \"T\", \"T_g\", \"T_bar_z\", \"T_bar\" "
        "or \"h_cm\""},

@@ -14,6 +14,7 @@
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/file_bytes.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/put_file.hpp"
 #include "tests/support/rigid_bed.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 #include "twin/twin.hpp"
@@ -674,6 +675,27 @@ TEST(Match, SaysWhatTheCellLacksAndLeavesNothing) {
                 .code,
             2);
   EXPECT_FALSE(fs::exists(folder / "twin"));
+}
+
+// The bed of the film lies between walls 10 sigma apart.
+TEST(Match, ACellInWhichTheBedCannotLieIsRefused) {
+  const TemporaryFolder folder;
+  const fs::path stack = short_stack(folder);
+  std::string cell = bytes_of(kStack / "CELL.toml");
+  const auto at = cell.find("width = 10");
+  ASSERT_NE(at, std::string::npos) << cell;
+  cell.replace(at, 10, "width = 12");
+  put_file(folder / "wide.toml", cell);
+  std::vector<std::string> words = {
+      "match",     stack,   folder / "wide.toml",        "-o", folder / "twin", "--twins", "1",
+      "--no-film", "--set", "time.steps_per_contact=20", "-q"};
+  const Ran refused = run_program(words);
+  EXPECT_EQ(refused.code, 2) << refused.err;
+  EXPECT_NE(refused.err.find("no closer to the right wall than 2.0"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("--trust-stated-cell"), std::string::npos) << refused.err;
+  EXPECT_FALSE(fs::exists(folder / "twin/experiment.h5"));
+  words.emplace_back("--trust-stated-cell");
+  EXPECT_EQ(run_program(words).code, 0);
 }
 
 TEST(Match, TheCellsDriveDisplacesTheScenes) {

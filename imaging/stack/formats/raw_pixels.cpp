@@ -112,8 +112,7 @@ std::string orientation_note(std::uint64_t orientation) {
   if (orientation < 2 || orientation > 8) return {};
   return fmt::format(
       "the file states orientation {}: the stored picture is {}, as viewers show it; x and y are those of "
-      "the "
-      "picture that is shown.",
+      "the picture that is shown.",
       orientation, kDone[orientation]);
 }
 
