@@ -10,12 +10,13 @@ words=(
   'usual bead:bead of median radius' 'begin anew:start over' 'begins anew:starts over' 'afresh:without history' 'hopeless:(state why)'
 )
 found=0
+complain() { echo "words: write '$1' instead of '$2'." >&2; found=1; }
 for entry in "${words[@]}"; do
-  word=${entry%%:*}
-  # Only whole words of prose and code; file contents, not names.
-  if git grep -n -i -w -e "$word" -e "${word}s" -e "${word}ed" -- '*.hpp' '*.cpp' '*.md' ':!CHANGELOG.md' ':!docs/glossary.md' >&2; then
-    echo "words: write '${entry#*:}' instead of '$word'." >&2
-    found=1
-  fi
+  word=${entry%%:*} right=${entry#*:}
+  # The word by itself, as a part of some_name, and as a part of SomeName.
+  capital=${word^}
+  pattern="(^|[^A-Za-z])(${word}|${capital})(s|ed)?(\$|[^a-z])|[a-z0-9]${capital}(s|ed)?(\$|[^a-z])"
+  ! git grep -n -E -e "$pattern" -- '*.hpp' '*.cpp' '*.py' '*.js' '*.md' ':!*.min.js' ':!CHANGELOG.md' ':!docs/glossary.md' >&2 || complain "$right" "$word"
+  ! git ls-files | grep -E -e "$pattern" >&2 || complain "$right" "$word"
 done
 exit $found

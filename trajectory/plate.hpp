@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Where the plate is in a frame. Frame::plate_height is a displacement along Drive::axis, which is a height
-/// only for a drive along z; what needs the height of the plate asks here.
+/// only for a drive along z. Code that needs the height of the plate calls these functions.
 
 #include <optional>
 
@@ -18,7 +18,7 @@ std::optional<double> plate_displacement(const TrajectoryInfo& info, const Frame
 std::optional<double> plate_height(const TrajectoryInfo& info, const Frame& frame);
 
 /// Displacement of the cell in `frame` by a drive along x or y, sigma; zero for a drive along z, and where it
-/// is not known. Drive::horizontal, a motion beside that along z, is not contained.
+/// is not known. Drive::horizontal, a motion beside that along z, is excluded.
 Vec3 sideways_displacement(const TrajectoryInfo& info, const Frame& frame);
 
 /// Whether the drive, along z, moves other walls while the plate rests (cell.bottom_motion = "rest"), as far

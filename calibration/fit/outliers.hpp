@@ -4,7 +4,7 @@
 
 namespace twincell::calibration {
 
-/// Residuals beyond it, in robust standard deviations, do not belong to what is fitted.
+/// Residuals beyond it, in robust standard deviations, are outliers.
 inline constexpr double kWorstSigma = 4;
 
 }  // namespace twincell::calibration

@@ -15,8 +15,8 @@ bool neighbours_separate(const FrameMatch& match);
 
 /// Matches all tracks and detections collectively and replaces the links. If there are many more choices than
 /// in one layer of discs, the links are unchanged.
-/// \param steps_back for each detection, in the order of the grid, the step that would have led there in free
-///     flight if the bead continues to the next frame in free flight; NaN where unknown, or empty
+/// \param steps_back for each detection, in the order of the grid, the displacement in free flight that leads
+///     to it, extrapolated back from the next frame; NaN where unknown, or empty
 void match_all(FrameMatch& match, const std::vector<PixelPoint>& steps_back);
 
 /// Whether beads follow ballistic paths. Otherwise, as in tables of hopping points, the next frame is no

@@ -26,15 +26,6 @@ double steepest_near(const std::vector<float>& fall, std::size_t most) {
 
 }  // namespace
 
-ProfileLevel level_at(const DiscProfile& f, double r) {
-  const double t = r * DiscProfile::kPerPixel;
-  const auto k = static_cast<std::size_t>(t);
-  if (k + 1 >= f.levels.size()) return {0, 0};
-  const double part = t - static_cast<double>(k), a = static_cast<double>(f.levels[k]),
-               b = static_cast<double>(f.levels[k + 1]);
-  return {a + part * (b - a), (b - a) * DiscProfile::kPerPixel};
-}
-
 double DiscProfile::at(double r) const {
   return level_at(*this, r).value;
 }

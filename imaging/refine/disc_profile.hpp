@@ -48,6 +48,13 @@ struct ProfileLevel {
 };
 /// f and its slope at distance r >= 0, px, from the centre of a disc of radius radius_px, by linear
 /// interpolation; {0, 0} beyond the last level. Pure.
-ProfileLevel level_at(const DiscProfile& f, double r);
+inline ProfileLevel level_at(const DiscProfile& f, double r) {
+  const double t = r * DiscProfile::kPerPixel;
+  const auto k = static_cast<std::size_t>(t);
+  if (k + 1 >= f.levels.size()) return {0, 0};
+  const double part = t - static_cast<double>(k), a = static_cast<double>(f.levels[k]),
+               b = static_cast<double>(f.levels[k + 1]);
+  return {a + part * (b - a), (b - a) * DiscProfile::kPerPixel};
+}
 
 }  // namespace twincell::imaging

@@ -12,7 +12,7 @@
 ///    taken, until none explains a tenth of a disc. A disc behind another explains its crescent.
 /// 2. Fit. Centre, radius and darkness of each disc by Gauss-Newton steps, with the other discs fixed, and
 ///    the blur of all discs; the radii and the darkness have their scatter from disc to disc as priors. A
-///    pixel counts by what the other discs transmit there.
+///    pixel is weighted by the transmission of the other discs there.
 /// 3. Discs that explain less than a tenth of a whole disc are dropped. Where the picture is darker than the
 ///    discs, further discs are selected, and the fit is repeated. A disc that is larger than the others is
 ///    replaced by two, if these describe the picture better.

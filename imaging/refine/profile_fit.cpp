@@ -6,10 +6,13 @@
 #include <cstddef>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "core/cancellation.hpp"
 #include "core/median.hpp"
 #include "imaging/refine/disc_measures.hpp"
+#include "imaging/refine/highlight_spot.hpp"
+#include "imaging/refine/profile_likeness.hpp"
 #include "imaging/refine/residual_correlation.hpp"
 #include "imaging/refine/sparse_gauss_newton.hpp"
 
@@ -29,28 +32,6 @@ constexpr double kLevelSpread = 0.1;    // prior scatter of a_k
 constexpr double kDoubled = 0.5;        // in R: centres closer than that belong to one disc
 constexpr double kLike = 0.4;           // smallest correlation of a proposed disc with the profile
 constexpr double kApart = 1.6;          // in R: no disc is proposed closer to another, as in the vote
-
-/// Sums of a picture over a disc, given as a mask with one run of pixels in each row, around each pixel that
-/// is far enough from the border. With sums along the rows this takes two reads a row of the disc, fewer
-/// operations than a correlation by Fourier transforms.
-cv::Mat1d sums_over(const cv::Mat1f& picture, const cv::Mat1f& disc) {
-  cv::Mat1d before(picture.rows, picture.cols + 1);  // sum of a row up to a pixel
-  for (int y = 0; y < picture.rows; ++y) {
-    before(y, 0) = 0;
-    for (int x = 0; x < picture.cols; ++x)
-      before(y, x + 1) = before(y, x) + static_cast<double>(picture(y, x));
-  }
-  cv::Mat1d sums = cv::Mat1d::zeros(picture.rows - disc.rows + 1, picture.cols - disc.cols + 1);
-  for (int row = 0; row < disc.rows; ++row) {
-    const int width = cv::countNonZero(disc.row(row)), first = (disc.cols - width) / 2;
-    for (int y = 0; y < sums.rows && width > 0; ++y) {
-      const double *from = before[y + row] + first, *to = from + width;
-      double* sum = sums[y];
-      for (int x = 0; x < sums.cols; ++x) sum[x] += to[x] - from[x];
-    }
-  }
-  return sums;
-}
 
 /// The fit of one frame: discs, profile and model picture.
 class ProfileFit {
@@ -233,77 +214,22 @@ class ProfileFit {
     return scores.empty() ? 0 : upper_median(std::move(scores));
   }
 
-  /// The vertex of the paraboloid through the values of a function at a point and at eight around it,
-  /// relative to the point, at most a step along x and y.
-  template <class Function>
-  static cv::Point2d vertex(const Function& of, const cv::Point2d& at, double step) {
-    double gx = 0, gy = 0, xx = 0, yy = 0, xy = 0;
-    for (const int i : {-1, 0, 1})
-      for (const int j : {-1, 0, 1}) {
-        const double v = of(at + cv::Point2d(i * step, j * step));
-        gx += i * v / 6, gy += j * v / 6, xy += i * j * v / 4;
-        xx += (i == 0 ? -2 : 1) * v / 3, yy += (j == 0 ? -2 : 1) * v / 3;
-      }
-    const double det = xx * yy - xy * xy;
-    if (!(det > 0 && xx > 0)) return {};
-    return {step * std::clamp((xy * gy - yy * gx) / det, -1.0, 1.0),
-            step * std::clamp((xy * gx - xx * gy) / det, -1.0, 1.0)};
-  }
-
   /// Moves the centres of all discs by the same vector, to the middle of their rims, if a highlight beside
-  /// the middle attracted them. f is then that of a smeared rim, which the residuals at the rims show: they
-  /// are least where the rims are concentric. A compass search, for a smeared rim has no gradient to the
-  /// middle. Then the spot is learnt, so that no disc is drawn to it by more than the others.
+  /// the middle attracted them. The vector is measured on kSome of the discs. Then the spot is learnt, so
+  /// that no disc is drawn to it by more than the others.
   void centre_at_rims() {
-    constexpr double kFirstStep = 0.125, kLastStep = 0.06;  // R
-    constexpr double kMinShift = 0.04, kMaxShift = 0.5;     // R: less is no highlight, more another disc
-    constexpr double kBetter = 0.75;                        // of the squares of the residuals at the rims
-    constexpr double kMinMisfit = 1e-3;                     // mean square at the rims; highlights leave 4e-3
     constexpr int kSpotRounds = 2, kSpotSweeps = 2;
-    std::vector<Detection> before = beads_;
-    const DiscProfile profile_before = shared_;
-    const auto squares_at = [&](const cv::Point2d& shift) {
-      for (std::size_t k = 0; k < beads_.size(); ++k)
-        beads_[k].x = before[k].x + shift.x, beads_[k].y = before[k].y + shift.y;
-      learn(kMinScore);
-      return squares_at_rims();
-    };
-    const double first = squares_at({});
-    if (first < kMinMisfit) {
-      shared_ = profile_before;
-      render();
-      return;
-    }
-    double least = first;
-    cv::Point2d shift;
-    for (double step = kFirstStep * radius_; step > kLastStep * radius_; step *= 0.5)
-      for (bool moves = true; moves;) {
-        moves = false;
-        for (const cv::Point2d way : {cv::Point2d(0, 1), {0, -1}, {1, 0}, {-1, 0}}) {
-          const cv::Point2d next = shift + step * way;
-          if (cv::norm(next) > kMaxShift * radius_) continue;
-          const double squares = squares_at(next);
-          if (!(squares < least)) continue;
-          least = squares;
-          shift = next;
-          moves = true;
-        }
-      }
-    if (!(least < kBetter * first) || cv::norm(shift) < kMinShift * radius_) {
-      beads_ = before;
-      shared_ = profile_before;
-      render();
-      return;
-    }
-    const auto to_vertex = [&] { (void)squares_at(shift + vertex(squares_at, shift, kLastStep * radius_)); };
-    to_vertex();
-    shift = {};
+    const cv::Rect area = area_of_some();
+    Prepared image;
+    image.darkness = image_.darkness(area).clone();
+    const std::optional<cv::Point2d> shift = ProfileFit(image, *this, area).shift_to_rims();
+    if (!shift) return;
+    move_and_learn(*shift);
     for (int round = 0; round < kSpotRounds; ++round) {
       learn_spot();
       for (int k = 0; k < kSpotSweeps; ++k) sweep();
       learn(kMinScore);
-      before = beads_;
-      to_vertex();
+      move_and_learn(ProfileFit(image, *this, area).vertex_at({}));
     }
   }
 
@@ -323,6 +249,106 @@ class ProfileFit {
   [[nodiscard]] bool empty() const { return beads_.empty(); }
 
  private:
+  /// The fit of the discs that reach an area of the frame.
+  /// \param image the area of the frame
+  ProfileFit(const Prepared& image, const ProfileFit& whole, const cv::Rect& area)
+      : image_(image),
+        radius_(whole.radius_),
+        noise_(whole.noise_),
+        huber_(whole.huber_),
+        shared_(whole.shared_),
+        learnt_(whole.learnt_),
+        model_(area.size()),
+        spot_(whole.spot_) {
+    for (Detection b : whole.beads_) {
+      b.x -= area.x, b.y -= area.y;
+      const double reach = b.radius + kReach;
+      if (b.x > -reach && b.y > -reach && b.x < area.width - 1 + reach && b.y < area.height - 1 + reach)
+        beads_.push_back(b);
+    }
+  }
+
+  /// A part of the frame, about the middle of the discs, in which lie kSome of them; the frame if there are
+  /// fewer.
+  [[nodiscard]] cv::Rect area_of_some() const {
+    constexpr std::size_t kSome = 100;  // the common vector is ten times as accurate as the centre of a disc
+    const cv::Rect frame({}, image_.darkness.size());
+    if (beads_.size() <= kSome) return frame;
+    std::vector<double> across, along, far;
+    for (const Detection& b : beads_) across.push_back(b.x), along.push_back(b.y);
+    const double x = upper_median(across), y = upper_median(along);
+    for (const Detection& b : beads_)
+      far.push_back(std::max(std::abs(b.x - x) / frame.width, std::abs(b.y - y) / frame.height));
+    std::nth_element(far.begin(), far.begin() + kSome, far.end());
+    const double half = far[kSome];
+    const cv::Point first(cvFloor(x - half * frame.width), cvFloor(y - half * frame.height)),
+        last(cvCeil(x + half * frame.width), cvCeil(y + half * frame.height));
+    return cv::Rect(first, last + cv::Point(1, 1)) & frame;
+  }
+
+  void move_and_learn(const cv::Point2d& shift) {
+    for (Detection& b : beads_) b.x += shift.x, b.y += shift.y;
+    learn(kMinScore);
+  }
+
+  /// Mean square of the residuals at the rims with all centres moved.
+  double squares_at(const cv::Point2d& shift) {
+    const std::vector<Detection> before = beads_;
+    move_and_learn(shift);
+    const double squares = squares_at_rims();
+    beads_ = before;
+    return squares;
+  }
+
+  static constexpr double kLastStep = 0.06;  // R: last step of the search for the middle of the rims
+
+  /// The place of the least mean square at the rims: the vertex of the paraboloid through its values at a
+  /// shift and at eight around it, at most a step away along x and y.
+  cv::Point2d vertex_at(const cv::Point2d& shift) {
+    const double step = kLastStep * radius_;
+    double gx = 0, gy = 0, xx = 0, yy = 0, xy = 0;
+    for (const int i : {-1, 0, 1})
+      for (const int j : {-1, 0, 1}) {
+        const double v = squares_at(shift + cv::Point2d(i * step, j * step));
+        gx += i * v / 6, gy += j * v / 6, xy += i * j * v / 4;
+        xx += (i == 0 ? -2 : 1) * v / 3, yy += (j == 0 ? -2 : 1) * v / 3;
+      }
+    const double det = xx * yy - xy * xy;
+    if (!(det > 0 && xx > 0)) return shift;
+    return shift + step * cv::Point2d(std::clamp((xy * gy - yy * gx) / det, -1.0, 1.0),
+                                      std::clamp((xy * gx - xx * gy) / det, -1.0, 1.0));
+  }
+
+  /// From the centres of the discs to the middle of their rims. If a highlight attracted the centres, f is
+  /// that of a smeared rim, which the residuals at the rims show: they are least where the rims are
+  /// concentric. A compass search, for a smeared rim has no gradient to the middle.
+  /// \returns nothing if no highlight attracted the centres
+  std::optional<cv::Point2d> shift_to_rims() {
+    constexpr double kFirstStep = 0.125;                 // R
+    constexpr double kMinShift = 0.04, kMaxShift = 0.5;  // R: less is no highlight, more another disc
+    constexpr double kBetter = 0.75;                     // of the squares of the residuals at the rims
+    constexpr double kMinMisfit = 1e-3;                  // mean square at the rims; highlights leave 4e-3
+    const double first = squares_at({});
+    if (first < kMinMisfit) return {};
+    double least = first;
+    cv::Point2d shift;
+    for (double step = kFirstStep * radius_; step > kLastStep * radius_; step *= 0.5)
+      for (bool moves = true; moves;) {
+        moves = false;
+        for (const cv::Point2d way : {cv::Point2d(0, 1), {0, -1}, {1, 0}, {-1, 0}}) {
+          const cv::Point2d next = shift + step * way;
+          if (cv::norm(next) > kMaxShift * radius_) continue;
+          const double squares = squares_at(next);
+          if (!(squares < least)) continue;
+          least = squares;
+          shift = next;
+          moves = true;
+        }
+      }
+    if (!(least < kBetter * first) || cv::norm(shift) < kMinShift * radius_) return {};
+    return vertex_at(shift);
+  }
+
   /// Number of pixels to each side of a disc's centre that show the disc.
   [[nodiscard]] int reach() const { return cvCeil(radius_) + 1; }
   [[nodiscard]] cv::Point pixel_of(const Detection& b) const {
@@ -336,7 +362,7 @@ class ProfileFit {
 
   /// Adds discs where the picture resembles the profile and there is room, in the order of correlation.
   void add_similar(const cv::Mat1f& picture) {
-    const cv::Mat1f like = likeness(picture);
+    const cv::Mat1f like = likeness(picture, shared_, kMinLevel);
     std::vector<Detection> tops;
     for (int y = 0; y < like.rows; ++y)
       for (int x = 0; x < like.cols; ++x) {
@@ -359,36 +385,6 @@ class ProfileFit {
     }
   }
 
-  /// Correlation of the picture around each pixel with the profile, over r < R, because pixels outside also
-  /// belong to neighbours. 0 where the best-fitting level is lower than that of any disc. Outside the frame
-  /// the picture continues with the values of its border.
-  [[nodiscard]] cv::Mat1f likeness(const cv::Mat1f& picture) const {
-    const int side = 2 * reach() + 1;
-    cv::Mat1f disc = cv::Mat1f::zeros(side, side), profile = disc.clone();
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < side; ++x) {
-        const double r = std::hypot(x - reach(), y - reach());
-        if (r >= radius_) continue;
-        disc(y, x) = 1;
-        profile(y, x) = static_cast<float>(level_at(shared_, r).value);
-      }
-    profile -= disc * (cv::sum(profile)[0] / cv::sum(disc)[0]);
-    const double n = cv::sum(disc)[0], of_profile = profile.dot(profile);
-    cv::Mat1f wide, both;
-    cv::copyMakeBorder(picture, wide, reach(), reach(), reach(), reach(), cv::BORDER_REPLICATE);
-    cv::matchTemplate(wide, profile, both, cv::TM_CCORR);
-    const cv::Mat1d sum = sums_over(wide, disc), squares = sums_over(wide.mul(wide), disc);
-    cv::Mat1f like = cv::Mat1f::zeros(picture.size());
-    for (int y = 0; y < like.rows; ++y)
-      for (int x = 0; x < like.cols; ++x) {
-        const double s = sum(y, x), common = static_cast<double>(both(y, x)),
-                     of_picture = squares(y, x) - s * s / n;
-        if (common > kMinLevel * of_profile && of_picture > 0)
-          like(y, x) = static_cast<float>(common / std::sqrt(of_profile * of_picture));
-      }
-    return like;
-  }
-
   /// Calls use(x, y, r) for the pixels of the frame that a disc reaches.
   template <class Use>
   void over(const Detection& b, Use&& use, double beyond = kReach) const {
@@ -404,7 +400,7 @@ class ProfileFit {
 
   void add(const Detection& b, double sign) {
     over(b, [&](int x, int y, double r) {
-      const double level = level_at(shared_, r * radius_ / b.radius).value + spot_at(b, x, y).value;
+      const double level = level_at(shared_, r * radius_ / b.radius).value + spot_.at(b, x, y).value;
       model_(y, x) += static_cast<float>(sign * b.darkness * level);
     });
   }
@@ -423,7 +419,7 @@ class ProfileFit {
       const double slope = b.darkness * f.slope * scale, far = std::max(r, 1e-6);
       const double t = static_cast<double>(model_(y, x)),
                    left = static_cast<double>(image_.darkness(y, x)) - t;
-      const SpotLevel spot = spot_at(b, x, y);
+      const HighlightSpot::Level spot = spot_.at(b, x, y);
       const Step j(-slope * (x - b.x) / far - b.darkness * spot.along_x,
                    -slope * (y - b.y) / far - b.darkness * spot.along_y, -slope * r / b.radius,
                    f.value + spot.value);
@@ -450,69 +446,28 @@ class ProfileFit {
     return std::hypot(dx, dy);
   }
 
-  /// Level and slopes of the spot of a disc at a pixel, darkness and darkness per px.
-  struct SpotLevel {
-    double value = 0, along_x = 0, along_y = 0;
-  };
-  [[nodiscard]] SpotLevel spot_at(const Detection& b, int x, int y) const {
-    if (spot_.empty()) return {};
-    const double u = (x - b.x) * DiscProfile::kPerPixel + spot_middle(),
-                 v = (y - b.y) * DiscProfile::kPerPixel + spot_middle();
-    if (!(u >= 0 && v >= 0)) return {};
-    const int i = static_cast<int>(u), j = static_cast<int>(v);
-    if (i + 1 >= spot_.cols || j + 1 >= spot_.rows) return {};
-    const double s = u - i, t = v - j, a = static_cast<double>(spot_(j, i)),
-                 right = static_cast<double>(spot_(j, i + 1)), below = static_cast<double>(spot_(j + 1, i)),
-                 both = static_cast<double>(spot_(j + 1, i + 1));
-    return {(1 - t) * ((1 - s) * a + s * right) + t * ((1 - s) * below + s * both),
-            DiscProfile::kPerPixel * ((1 - t) * (right - a) + t * (both - below)),
-            DiscProfile::kPerPixel * ((1 - s) * (below - a) + s * (both - right))};
-  }
-  [[nodiscard]] double spot_middle() const { return std::ceil(radius_ * DiscProfile::kPerPixel); }
-
   /// The spots of all discs; empty without a spot.
   [[nodiscard]] cv::Mat1f picture_of_spots() const {
     if (spot_.empty()) return {};
     cv::Mat1f picture = cv::Mat1f::zeros(model_.size());
     for (const Detection& b : beads_)
       over(b, [&](int x, int y, double) {
-        picture(y, x) += static_cast<float>(b.darkness * spot_at(b, x, y).value);
+        picture(y, x) += static_cast<float>(b.darkness * spot_.at(b, x, y).value);
       });
     return picture;
   }
 
   /// Learns the spot: what the discs have in common inside their rims beside f.
   void learn_spot() {
-    constexpr double kWhole = 0.75, kEnd = 0.9;  // R: where it begins to vanish, and has vanished
-    constexpr double kFew = 0.5;                 // discs in a cell at which it is half of the residual
-    const int side = 2 * static_cast<int>(spot_middle()) + 1;
-    cv::Mat1d sum = cv::Mat1d::zeros(side, side), weight = sum.clone();
+    HighlightSpot::Lesson lesson(radius_);
     for (const Detection& b : beads_) {
       if (b.score < kMinScore) continue;
-      over(b, [&](int x, int y, double r) {
-        if (r >= kEnd * b.radius) return;
-        const double left = static_cast<double>(image_.darkness(y, x)) - static_cast<double>(model_(y, x)) +
-                            b.darkness * spot_at(b, x, y).value;
-        const double u = (x - b.x) * DiscProfile::kPerPixel + spot_middle(),
-                     v = (y - b.y) * DiscProfile::kPerPixel + spot_middle();
-        const int i = static_cast<int>(u), j = static_cast<int>(v);
-        if (u < 0 || v < 0 || i + 1 >= side || j + 1 >= side) return;
-        for (const int di : {0, 1})
-          for (const int dj : {0, 1}) {
-            const double share = (di == 0 ? 1 - (u - i) : u - i) * (dj == 0 ? 1 - (v - j) : v - j);
-            sum(j + dj, i + di) += share * b.darkness * left;
-            weight(j + dj, i + di) += share * b.darkness * b.darkness;
-          }
+      over(b, [&](int x, int y, double) {
+        const double left = static_cast<double>(image_.darkness(y, x)) - static_cast<double>(model_(y, x));
+        lesson.add(b, x, y, left + b.darkness * spot_.at(b, x, y).value);
       });
     }
-    cv::Mat1f spot = cv::Mat1f::zeros(side, side);
-    for (int j = 0; j < side; ++j)
-      for (int i = 0; i < side; ++i) {
-        const double r = std::hypot(i - spot_middle(), j - spot_middle()) / DiscProfile::kPerPixel / radius_,
-                     kept = std::clamp((kEnd - r) / (kEnd - kWhole), 0.0, 1.0);
-        spot(j, i) = static_cast<float>(kept * sum(j, i) / (weight(j, i) + kFew));
-      }
-    spot_ = spot;
+    spot_ = lesson.learnt();
     render();
   }
 
@@ -569,7 +524,7 @@ class ProfileFit {
           const double left = std::clamp(
               static_cast<double>(image_.darkness(y, x)) - static_cast<double>(model_(y, x)), -bound, bound);
           const double own =
-              left + b.darkness * (level_at(shared_, r * radius_ / b.radius).value + spot_at(b, x, y).value);
+              left + b.darkness * (level_at(shared_, r * radius_ / b.radius).value + spot_.at(b, x, y).value);
           ++n, sum += own, squares += own * own, left_squares += left * left;
         },
         1.0);
@@ -584,7 +539,7 @@ class ProfileFit {
   DiscProfile shared_;
   bool learnt_ = false;
   cv::Mat1f model_;
-  cv::Mat1f spot_;   // of a disc beside f, kPerPixel values a px, its middle at the centre; empty: none
+  HighlightSpot spot_;
   cv::Mat1b taken_;  // pixels too close to a known disc for another centre
   std::vector<Detection> beads_, dropped_;
   std::vector<Normal> covariance_;

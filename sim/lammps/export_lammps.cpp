@@ -14,6 +14,7 @@
 
 #include "core/provenance.hpp"
 #include "sim/laws/cell_laws.hpp"
+#include "sim/laws/lammps_contact.hpp"
 #include "sim/laws/law_words.hpp"
 #include "sim/run/simulation.hpp"
 #include "sim/scene/make_plan.hpp"
@@ -23,21 +24,13 @@ namespace twincell::sim {
 
 namespace {
 
-/// Parameters of a contact for pair_style gran/hooke. The damping coefficients are rates, which LAMMPS
-/// multiplies by m_eff.
-struct Hooke {
-  double k_n = 0, k_t = 0, gamma_n = 0, gamma_t = 0, mu = 0;
-  bool history = false, friction = false, clipped = false;
-  bool operator==(const Hooke&) const = default;
-};
-
 /// Flat walls perpendicular to one axis, at their positions for the mean position of the plate.
 struct FlatWalls {
   std::string name;
   Axis axis;
   std::optional<double> lower, upper;
   bool move;  ///< with the plate
-  Hooke law;
+  LammpsContact law;
 };
 
 struct DeckBead {
@@ -52,7 +45,7 @@ struct Model {
   int dimension = 2;
   std::array<std::string, 3> boundary;  ///< LAMMPS's words, for each of our axes
   Vec3 lower, upper;                    ///< corners of LAMMPS's box, which grows where there are no walls
-  Hooke bead;
+  LammpsContact bead;
   std::vector<FlatWalls> walls;
   Vec3 gravity;
   double skin = 0.2;
@@ -65,76 +58,35 @@ struct Model {
   std::string resolved;  ///< the scene's TOML
 };
 
-template <class... F>
-struct Overloaded : F... {
-  using F::operator()...;
-};
-template <class... F>
-Overloaded(F...) -> Overloaded<F...>;
-
 [[noreturn]] void refuse(const Scene& scene, const std::string& key, const std::string& why) {
   throw ConfigError(scene.where(key), why);
 }
 
 /// Converts contact laws. \param table the table of the scene with the keys for this kind of contact
-Hooke hooke_of(const ContactLaws& laws, double m_eff, const Scene& scene, const std::string& table) {
-  const auto no_word = [&](const char* axis, std::string_view law) {
-    refuse(scene, std::string("contact.") + axis,
-           fmt::format("LAMMPS's gran/hooke styles do not support the law '{}'.", law));
+LammpsContact lammps_contact(const ContactLaws& laws, double m_eff, const Scene& scene,
+                             const std::string& table) {
+  LammpsContact contact;
+  const auto write = [&](const char* axis, const auto& laws_of_axis) {
+    std::visit(
+        [&]<class Law>(const Law& law) {
+          if constexpr (InLammps<Law>)
+            law.write_lammps(contact, m_eff);
+          else
+            refuse(scene, std::string("contact.") + axis,
+                   fmt::format("LAMMPS's gran/hooke styles do not support the law '{}'.", law.kName));
+        },
+        laws_of_axis);
   };
-  Hooke h;
-  const auto spring_dashpot = [&](const LinearSpringDashpot& law) {
-    h.k_n = law.k_n;
-    h.gamma_n = law.damping.eta(m_eff) / m_eff;
-  };
-  const auto slider = [&](const auto& law) {
-    h.gamma_t = law.damping.eta(m_eff) / m_eff;
-    h.mu = law.mu;
-    h.friction = true;
-  };
-  std::visit(Overloaded{[&](const LinearSpringDashpot& law) { spring_dashpot(law); },
-                        [&](const NoTensionSpringDashpot& law) {
-                          spring_dashpot(law);
-                          h.clipped = true;
-                        },
-                        [&](const auto& law) { no_word("normal", law.kName); }},
-             laws.normal);
-  std::visit(Overloaded{[](const NoTangential&) {}, [&](const DashpotSlider& law) { slider(law); },
-                        [&](const SpringSlider& law) {
-                          slider(law);
-                          h.k_t = law.k_t;
-                          h.history = true;
-                          if (law.k_t == 0)
-                            refuse(
-                                scene, table + ".k_t",
-                                "LAMMPS's history style divides by it; set 0 for all contacts or for none.");
-                        },
-                        [&](const auto& law) { no_word("tangential", law.kName); }},
-             laws.tangential);
-  std::visit(Overloaded{[](const NoRolling&) {}, [&](const auto& law) { no_word("rolling", law.kName); }},
-             laws.rolling);
+  write("normal", laws.normal);
+  write("tangential", laws.tangential);
+  write("rolling", laws.rolling);
+  if (contact.history && contact.k_t == 0)
+    refuse(scene, table + ".k_t",
+           "LAMMPS's history style divides by it; set 0 for all contacts or for none.");
   constexpr double kMaxFriction = 1e4;  // LAMMPS stops at a larger xmu
-  if (h.mu > kMaxFriction)
-    refuse(scene, table + ".mu", fmt::format("{:g} exceeds LAMMPS's limit, {:g}.", h.mu, kMaxFriction));
-  return h;
-}
-
-/// LAMMPS's damping coefficients are rates, the same for all masses; damping constants and restitutions
-/// require equal masses.
-void refuse_different_masses(const Scene& scene, const Plan& plan) {
-  const auto check = [&](const auto& law) {
-    if constexpr (requires { law.damping; })
-      if (law.damping.constant != 0 || law.damping.root != 0)
-        refuse(scene, "contact",
-               "beads of unequal masses need their damping as rates, gamma_n and gamma_t: LAMMPS has one "
-               "rate for all of them.");
-  };
-  const auto check_laws = [&](const ContactLaws& laws) {
-    std::visit(check, laws.normal);
-    std::visit(check, laws.tangential);
-  };
-  check_laws(plan.laws->bead);
-  for (const ContactLaws& laws : plan.laws->walls) check_laws(laws);
+  if (contact.mu > kMaxFriction)
+    refuse(scene, table + ".mu", fmt::format("{:g} exceeds LAMMPS's limit, {:g}.", contact.mu, kMaxFriction));
+  return contact;
 }
 
 /// The walls of a plan. Opposite walls with the same law share one fix, which then visits each bead only
@@ -150,8 +102,8 @@ std::vector<FlatWalls> flat_walls(const Scene& scene, const Plan& plan) {
     if (std::abs(wall.n[axis]) != 1)
       refuse(scene, "cell.side_tilt", "LAMMPS's fix wall/gran supports only walls along the axes.");
     const auto known = table.find(wall.name);
-    const Hooke law = hooke_of(plan.laws->walls[w], scene.mass, scene,
-                               "contact." + (known == table.end() ? wall.name : known->second));
+    const LammpsContact law = lammps_contact(plan.laws->walls[w], scene.mass, scene,
+                                             "contact." + (known == table.end() ? wall.name : known->second));
     const double at = wall.n[axis] * wall.offset;
     const bool lower = wall.n[axis] > 0;
     // A fix has one history per bead: in a narrow gap the history would pass from one wall to the other.
@@ -170,6 +122,18 @@ std::vector<FlatWalls> flat_walls(const Scene& scene, const Plan& plan) {
   return all;
 }
 
+/// LAMMPS's damping coefficients are rates, the same for all masses; damping constants and restitutions
+/// require equal masses.
+void refuse_different_masses(const Scene& scene, const Model& m) {
+  if (m.bead.for_all_masses &&
+      std::all_of(m.walls.begin(), m.walls.end(), [](const FlatWalls& w) { return w.law.for_all_masses; }))
+    return;
+  refuse(
+      scene, "contact",
+      "beads of unequal masses need their damping as rates, gamma_n and gamma_t: LAMMPS has one rate for all "
+      "of them.");
+}
+
 /// A model without its beads.
 Model model_of(const Scene& scene, const Plan& plan) {
   // Features without an equivalent in LAMMPS.
@@ -183,11 +147,11 @@ Model model_of(const Scene& scene, const Plan& plan) {
   if (scene.drive.ramp) refuse(scene, "drive.ramp", "LAMMPS's walls move as a sine that does not change.");
   if (scene.drive.horizontal) refuse(scene, "drive.horizontal", "LAMMPS's walls move along one axis.");
   if (scene.plate_drag > 0) refuse(scene, "cell.plate_drag", "LAMMPS has no drag against a moving cell.");
-  if (scene.spread != SizeSpread::none || scene.intruder) refuse_different_masses(scene, plan);
   Model m;
   m.dimension = plan.dimension;
-  m.bead = hooke_of(plan.laws->bead, scene.mass / 2, scene, "contact");
+  m.bead = lammps_contact(plan.laws->bead, scene.mass / 2, scene, "contact");
   m.walls = flat_walls(scene, plan);
+  if (scene.spread != SizeSpread::none || scene.intruder) refuse_different_masses(scene, m);
   m.gravity = scene.gravity;
   m.skin = 0.4 * scene.radius;
   m.disc = scene.inertia_factor == 0.5;
@@ -312,7 +276,7 @@ std::string data_text(const Model& m) {
   return text;
 }
 
-std::string hooke_words(const Hooke& h) {
+std::string hooke_words(const LammpsContact& h) {
   return fmt::format("{} {} {} {} {} {}{}", h.k_n, h.k_t, h.gamma_n, h.gamma_t, h.mu, h.friction ? 1 : 0,
                      h.clipped ? " limit_damping" : "");
 }
@@ -421,10 +385,10 @@ std::string input_text(const Model& m) {
   return text + "# The scene:\n#\n" + commented(m.resolved);
 }
 
-LammpsDeck deck_of(Model& m, const Scene& scene, const Plan& plan) {
+LammpsDeck deck_of(Model& m, const Scene& scene) {
   if (m.beads.empty()) refuse(scene, "beads.count", "LAMMPS does not read a system without beads.");
   if (std::any_of(m.beads.begin(), m.beads.end(), [&](const DeckBead& b) { return b.mass != scene.mass; }))
-    refuse_different_masses(scene, plan);
+    refuse_different_masses(scene, m);
   if (m.boundary[2] != "p")
     for (const DeckBead& b : m.beads) m.upper.z() = std::max(m.upper.z(), b.position.z() + 2 * b.radius);
   return {input_text(m), data_text(m), import_command(m)};
@@ -442,7 +406,7 @@ LammpsDeck lammps_deck(const Scene& scene, Progress& progress) {
   Model m = model_of(scene, start.plan());
   m.first_step = first_step(start.plan(), scene.phase.value_or(0));
   m.beads = beads_at_start(start);
-  return deck_of(m, scene, start.plan());
+  return deck_of(m, scene);
 }
 
 LammpsDeck lammps_deck(const Scene& scene, const TrajectorySource& trajectory, std::size_t index) {
@@ -478,7 +442,7 @@ LammpsDeck lammps_deck(const Scene& scene, const TrajectorySource& trajectory, s
   if (const std::string complaint = displaced_wall(scene, info, frame, phase); !complaint.empty())
     refuse(scene, "drive", name + complaint);
   m.beads = beads;
-  return deck_of(m, scene, plan);
+  return deck_of(m, scene);
 }
 
 }  // namespace twincell::sim

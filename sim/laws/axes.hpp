@@ -4,8 +4,7 @@
 /// To add a law, write a file with a struct that satisfies the concept of its axis (concepts.hpp), add its
 /// type to the list here, and write a verification test. `twincell keys` prints its kHelp. Scenes select the
 /// law by its kWord, kernels are compiled for it, the plan derives its effects from it, and `explain` lists
-/// it. Only device_laws.hpp and export_lammps.cpp select from these laws, because a device and LAMMPS support
-/// some of them.
+/// it. Only device_laws.hpp selects from these laws, because a device supports some of them.
 
 #include <variant>
 

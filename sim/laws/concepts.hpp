@@ -3,7 +3,7 @@
 /// Concepts that define a contact law. A law is a small value type. It declares the word by which a scene
 /// selects it, its parameters and the keys from which it reads them, the shortest time that the integrator
 /// must resolve, its constants per kind of pair, and one formula. `None` is a law too. Kernels use laws only
-/// through these concepts.
+/// through these concepts. A law that LAMMPS has also declares its words there (lammps_contact.hpp).
 ///
 /// Convention (docs/conventions.md): n points from j to i; the overlap is delta = R_i + R_j - r > 0 in
 /// contact; v_n = v_ij . n < 0 during approach; in the plane t = (-n_z, n_x) and v_t = v_ij . t - (R_i w_i +
@@ -41,6 +41,10 @@ concept NormalLaw = ContactLaw<Law> &&
   { Law::force(c, x, x, m) } -> std::same_as<float>;       // (constants, overlap, v_n, memory)
   { law.shortest_time(pair, x) } -> std::same_as<double>;  // (pair, impact speed), t0
   { law.largest_force(x) } -> std::same_as<double>;  // at an overlap; sets the rounding quantum of force sums
+  { law.is_elastic() } -> std::same_as<bool>;        // whether every impact gives back all energy
+  // Overlap at which a tangential stiffness that grows with the overlap must be resolved, sigma, at an impact
+  // speed: that of an elastic impact; 0 if shortest_time() resolves it.
+  { law.impact_overlap(pair, x) } -> std::same_as<double>;
 };
 
 /// A normal law that omits the attraction at the end of a contact: kOmitsTension = true. It gives the

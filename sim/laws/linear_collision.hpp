@@ -76,6 +76,8 @@ struct ViscousDamping {
   double constant = 0;  ///< c, m/t0: eta = c
   double root = 0;      ///< eta = root sqrt(m_eff), from a restitution
   [[nodiscard]] double eta(double m_eff) const { return rate * m_eff + constant + root * std::sqrt(m_eff); }
+  /// Whether eta is the same multiple of every m_eff.
+  [[nodiscard]] bool is_rate() const { return constant == 0 && root == 0; }
   [[nodiscard]] ViscousDamping times(double f) const { return {f * rate, f * constant, f * root}; }
 };
 

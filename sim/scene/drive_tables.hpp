@@ -20,9 +20,9 @@ struct RampSpec {
 /// Reads the table; absent without one.
 std::optional<RampSpec> read_ramp(const ConfigSection& drive);
 
-/// Makes the ramp. A frequency that `spec` does not state stays as it is. If it states no strength, the one
-/// that the drive states stays. With the amplitude, the peak velocity (also if K_m is stated) or Gamma, this
-/// quantity changes linearly in time, as the frequency does.
+/// Makes the ramp. The stated quantities change linearly in time: the frequency, and one of amplitude, peak
+/// velocity (also if K_m is stated) and Gamma. A frequency that `spec` does not state is constant; if `spec`
+/// states no strength, the one that the drive states is constant.
 /// \param begin the drive before the ramp, and `said` the keys that fix it
 /// \param gravity magnitude of g, to which Gamma and K_m refer
 /// \param first, cycles of the drive before the ramp, and its length

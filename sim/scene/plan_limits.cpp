@@ -95,24 +95,11 @@ void keep_shorter(std::vector<TimeLimit>& limits, const TimeLimit& limit) {
   limits.push_back(limit);
 }
 
-/// Overlap of an elastic impact, v sqrt(m_eff/k_n), under a normal law with a stiffness k_n of its own; 0 for
-/// Hertz, whose stiffness grows with the overlap as that of Mindlin does: its own limit resolves both
-/// (V2.17).
-double impact_overlap(const NormalAxis& normal, const PairScale& pair, double speed) {
-  return std::visit(
-      [&](const auto& law) {
-        if constexpr (requires { law.k_n; })
-          return speed * std::sqrt(pair.m_eff / law.k_n);
-        else
-          return 0.0;
-      },
-      normal);
-}
-
 /// Time that the tangential law needs to be resolved, t0; infinite without a limit. A stiffness that grows
-/// with the overlap is not bounded by that of a normal law with a stiffness k_n of its own.
+/// with the overlap is not bounded by that of a normal law with a constant stiffness.
 double tangential_time(const ContactLaws& laws, const PairScale& pair, double speed) {
-  const double overlap = impact_overlap(laws.normal, pair, speed);
+  const double overlap =
+      std::visit([&](const auto& law) { return law.impact_overlap(pair, speed); }, laws.normal);
   return std::visit(
       [&]<class Law>(const Law& law) {
         if constexpr (ReadsOverlap<Law>)

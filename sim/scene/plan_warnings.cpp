@@ -77,16 +77,7 @@ void warn_of_steps(const Scene& s, const Plan& plan, std::vector<std::string>& w
 
 /// Whether these normal contacts give back all energy.
 bool is_elastic(const ContactLaws& laws) {
-  return std::visit(
-      []<class Law>(const Law& law) {
-        if constexpr (requires { law.damping; })
-          return law.damping.eta(1) == 0;
-        else if constexpr (requires { law.viscous_time; })
-          return law.viscous_time == 0;
-        else
-          return law.restitution_fast == 1;
-      },
-      laws.normal);
+  return std::visit([](const auto& law) { return law.is_elastic(); }, laws.normal);
 }
 
 /// The errors of "split" in e have one sign, so that they add up where nothing else takes energy away.

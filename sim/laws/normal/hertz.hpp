@@ -41,6 +41,9 @@ struct HertzViscoelastic {
   /// up to a radius of 2 sigma, and at walls up to 1 sigma. A contact of larger R_eff exceeds it by the
   /// factor sqrt(R_eff). The only consequence is a coarser rounding quantum (rounding_constant()).
   [[nodiscard]] double largest_force(double overlap) const { return stiffness(1) * std::pow(overlap, 1.5); }
+  [[nodiscard]] bool is_elastic() const { return viscous_time == 0; }
+  /// The stiffness grows with the overlap as that of Mindlin does: one limit resolves both (V2.17).
+  [[nodiscard]] double impact_overlap(const PairScale& /*p*/, double /*speed*/) const { return 0; }
   [[nodiscard]] std::array<double, kConstants> constants(const PairScale& p) const {
     return {stiffness(p.r_eff), 1.5 * viscous_time};
   }

@@ -5,6 +5,7 @@
 
 #include <string_view>
 
+#include "sim/laws/lammps_contact.hpp"
 #include "sim/laws/linear_collision.hpp"
 #include "sim/laws/scalar_arithmetic.hpp"
 
@@ -20,6 +21,7 @@ struct LinearSpringDashpot {
   static constexpr int kConstants = 2, kMemory = 0;
   /// One formula, also just outside the contact (binary_collision.hpp).
   static constexpr bool kSmooth = true;
+  static constexpr std::string_view kInLammps = kWord;
 
   double k_n = 1e6;  ///< m g/sigma
   ViscousDamping damping;
@@ -36,6 +38,15 @@ struct LinearSpringDashpot {
     return oscillator(p).shortest_time();
   }
   [[nodiscard]] double largest_force(double overlap) const { return k_n * overlap; }
+  [[nodiscard]] bool is_elastic() const { return damping.eta(1) == 0; }
+  [[nodiscard]] double impact_overlap(const PairScale& p, double speed) const {
+    return speed * std::sqrt(p.m_eff / k_n);
+  }
+  void write_lammps(LammpsContact& contact, double m_eff) const {
+    contact.k_n = k_n;
+    contact.gamma_n = damping.eta(m_eff) / m_eff;
+    contact.for_all_masses = contact.for_all_masses && damping.is_rate();
+  }
   [[nodiscard]] std::array<double, kConstants> constants(const PairScale& p) const {
     return {k_n, damping.eta(p.m_eff)};
   }

@@ -12,11 +12,16 @@ struct NoTensionSpringDashpot : LinearSpringDashpot {
   static constexpr std::string_view kWord = "linear-no-tension", kName = "linear spring-dashpot, no tension";
   static constexpr std::string_view kHelp = "never pulls";
   static constexpr bool kOmitsTension = true;
+  static constexpr std::string_view kInLammps = kWord;
 
   static NoTensionSpringDashpot read(const ContactTable& t) { return {LinearSpringDashpot::read(t)}; }
   [[nodiscard]] Collision collision(const PairScale& p) const { return oscillator(p).without_pull(); }
   [[nodiscard]] Collision collision_with_tension(const PairScale& p) const {
     return LinearSpringDashpot::collision(p);
+  }
+  void write_lammps(LammpsContact& contact, double m_eff) const {
+    LinearSpringDashpot::write_lammps(contact, m_eff);
+    contact.clipped = true;
   }
 
   template <class V>

@@ -37,6 +37,10 @@ struct VelocityDependentRestitution {
     return LinearCollision(k_n, eta, p.m_eff).shortest_time();
   }
   [[nodiscard]] double largest_force(double overlap) const { return k_n * overlap; }
+  [[nodiscard]] bool is_elastic() const { return restitution_fast == 1; }
+  [[nodiscard]] double impact_overlap(const PairScale& p, double speed) const {
+    return speed * std::sqrt(p.m_eff / k_n);
+  }
   [[nodiscard]] std::array<double, kConstants> constants(const PairScale& p) const {
     return {k_n, std::sqrt(k_n * p.m_eff), restitution_fast, 1 / restitution_speed};
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "sim/laws/lammps_contact.hpp"
 #include "sim/laws/parameters.hpp"
 
 namespace twincell::sim {
@@ -16,10 +17,12 @@ struct NoRolling {
   static constexpr std::array<const char*, 0> kKeys = {};
   static constexpr int kConstants = 0;
   static constexpr bool kActs = false;
+  static constexpr std::string_view kInLammps = kWord;
 
   static NoRolling read(const ContactTable&) { return {}; }
   [[nodiscard]] double shortest_time(const PairScale&) const { return HUGE_VAL; }
   [[nodiscard]] std::array<double, kConstants> constants(const PairScale&) const { return {}; }
+  void write_lammps(LammpsContact&, double) const {}
 
   template <class V, class T, class X>
   static T torque(const V*, const T& w, V, V, X&) {

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "sim/laws/coulomb_limit.hpp"
+#include "sim/laws/lammps_contact.hpp"
 #include "sim/laws/linear_collision.hpp"
 
 namespace twincell::sim {
@@ -18,6 +19,7 @@ struct DashpotSlider {
   static constexpr const char* kKeys[] = {"mu", "gamma_t", "c_t", "c_t_over_c_n"};
   static constexpr int kConstants = 2;
   static constexpr bool kActs = true, kHistory = false;
+  static constexpr std::string_view kInLammps = kWord;
 
   ViscousDamping damping;
   double mu = 0.6;
@@ -33,6 +35,12 @@ struct DashpotSlider {
   }
   [[nodiscard]] std::array<double, kConstants> constants(const PairScale& p) const {
     return {-damping.eta(p.m_eff), mu};
+  }
+  void write_lammps(LammpsContact& contact, double m_eff) const {
+    contact.gamma_t = damping.eta(m_eff) / m_eff;
+    contact.mu = mu;
+    contact.friction = true;
+    contact.for_all_masses = contact.for_all_masses && damping.is_rate();
   }
 
   template <class V, class T, class X>

@@ -34,6 +34,7 @@ struct SpringSlider {
   static constexpr bool kActs = true, kHistory = true;
   static constexpr std::string_view kWithoutHistory = DashpotSlider::kWord;
   static constexpr SlipReading kReading = SlipReading::rescale;
+  static constexpr std::string_view kInLammps = kWord;
 
   double k_t = 1e4;  ///< > 0, m g/sigma
   ViscousDamping damping;
@@ -49,6 +50,11 @@ struct SpringSlider {
   }
   [[nodiscard]] std::array<double, kConstants> constants(const PairScale& p) const {
     return {-k_t, -damping.eta(p.m_eff), mu, k_t > 0 ? -1 / k_t : 0};  // signs as in the formula
+  }
+  void write_lammps(LammpsContact& contact, double m_eff) const {
+    DashpotSlider{damping, mu}.write_lammps(contact, m_eff);
+    contact.k_t = k_t;
+    contact.history = true;
   }
 
   template <class V, class T, class X>
