@@ -5,9 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 
 #include "analysis/colouring/colouring.hpp"
+#include "analysis/colouring/value_table.hpp"
 #include "cli/draw_page.hpp"
 #include "cli/output.hpp"
 #include "cli/verb.hpp"
@@ -24,7 +26,8 @@ namespace {
 constexpr const char* kPlain = "plain";  ///< the word of --colour for beads of one colour
 
 struct DrawOptions {
-  std::string trajectory, frames, colour = kPlain;
+  std::string trajectory, frames;
+  std::string colour = kPlain;  ///< word of a colouring, or name of a table
   std::vector<double> range;
   bool fps_said = false;
   bool coloured = false;  ///< some bead of the drawn frames has a number
@@ -62,6 +65,30 @@ void write_page(const H5mdReader& trajectory, const DrawOptions& o, const Common
   print_result(common, document, fmt::format("{}\n{}\n", text, o.job.output.string()));
 }
 
+/// Sets the number of each bead that its colour shows.
+void colour_beads(DrawOptions& o, const H5mdReader& trajectory) {
+  std::function<std::vector<double>(std::size_t, const Frame&)> of;
+  if (std::filesystem::path(o.colour).extension() == ".csv") {
+    const auto table =
+        std::make_shared<analysis::ValueTable>(o.colour, trajectory.n_frames(), trajectory.info().n_beads);
+    o.colour = o.job.colours.name = table->name();
+    of = [table](std::size_t index, const Frame&) { return table->of(index); };
+  } else {
+    const analysis::Colouring& colouring = analysis::colouring_named(o.colour, trajectory, "--colour");
+    o.job.colours.name = colouring.word;
+    o.job.colours.unit = colouring.unit;
+    of = [&](std::size_t index, const Frame& frame) {
+      return colouring.of({.source = trajectory, .index = index, .frame = frame});
+    };
+  }
+  o.job.colours.of = [&o, of](std::size_t index, const Frame& frame) {
+    const std::vector<double> numbers = of(index, frame);
+    o.coloured = o.coloured || std::any_of(numbers.begin(), numbers.end(),
+                                           [](double number) { return std::isfinite(number); });
+    return numbers;
+  };
+}
+
 void run(DrawOptions& o, const Common& common) {
   const bool page = o.job.output.extension() == ".html";
   if (o.fps_said && !o.job.film())
@@ -74,18 +101,7 @@ void run(DrawOptions& o, const Common& common) {
   if (o.job.frames.end > n)
     note(common, fmt::format("--frames {} reaches beyond the end of {}, which has {}.", o.frames,
                              o.trajectory, plural(trajectory.n_frames(), "frame")));
-  if (o.colour != kPlain) {
-    const analysis::Colouring& colouring = analysis::colouring_named(o.colour, trajectory, "--colour");
-    o.job.colours.name = colouring.word;
-    o.job.colours.unit = colouring.unit;
-    o.job.colours.of = [&](std::size_t index, const Frame& frame) {
-      const std::vector<double> numbers =
-          colouring.of({.source = trajectory, .index = index, .frame = frame});
-      o.coloured = o.coloured || std::any_of(numbers.begin(), numbers.end(),
-                                             [](double number) { return std::isfinite(number); });
-      return numbers;
-    };
-  }
+  if (o.colour != kPlain) colour_beads(o, trajectory);
   if (page) return write_page(trajectory, o, common);
   imaging::Drawn drawn;
   {
@@ -123,14 +139,19 @@ void add_draw(CLI::App& program, Common& common) {
   verb.add_option("--frames", o->frames,
                   "Frames that are drawn: A:B or A:B:STEP, from frame A, counted from 0, to the one before "
                   "B; default: all");
-  std::string help = "Number that the colour of a bead shows. plain: none";
+  std::string help =
+      "Number that the colour of a bead shows, or FILE.csv with the columns frame, particle and value. "
+      "plain: none";
   std::vector<std::string> words = {kPlain};
   for (const analysis::Colouring& colouring : analysis::colourings()) {
     help += fmt::format("; {}: {}", colouring.word, colouring.help);
     words.emplace_back(colouring.word);
   }
   verb.add_option("--colour", o->colour, help)
-      ->check(CLI::IsMember(words))
+      ->check([words](const std::string& said) {
+        const bool is_table = std::filesystem::path(said).extension() == ".csv";
+        return is_table ? std::string() : CLI::IsMember(words)(said);
+      })
       ->option_text(kWord)
       ->capture_default_str();
   verb.add_option("--colour-range", o->range,

@@ -209,8 +209,8 @@ py::object locate_beads_of(const py::object& said, imaging::LocatingRequest requ
   std::vector<FrameReport> reports;
   imaging::MotionInExposure motion;
   std::map<imaging::Verdict, std::size_t> left_out;
+  imaging::RegionFrames seen(*frames, region);
   const imaging::LocatorConfiguration found = unlocked(callback, [&](Progress& progress) {
-    imaging::RegionFrames seen(*frames, region);
     imaging::FramesAhead ahead(seen);
     imaging::LocatorConfiguration configuration = imaging::configure_locator(ahead, given, n_threads);
     imaging::locate_stack(
@@ -232,6 +232,7 @@ py::object locate_beads_of(const py::object& said, imaging::LocatingRequest requ
   report["settings"] = settings_of(found.locator, request, said_frames);
   report["settings_frame"] = found.frame;
   report["contrast"] = found.locator.preprocess.contrast;
+  report["picture_size"] = py::make_tuple(seen.whole_size().width, seen.whole_size().height);
   report["left_out"] = in_words(left_out);
   report["frames"] = per_frame(reports, range, motion);
   return py::make_tuple(columns_of(std::move(beads)), report);
@@ -258,6 +259,9 @@ py::object track(const py::object& said, TrackCall call, const py::object& callb
   if (is_table(stack)) {
     table = table_of(stack);
     if (!py::hasattr(stack, "keys")) name = table->file;
+    // The table of `locate` states the size of its pictures.
+    if (!call.table.picture && py::hasattr(stack, "attrs") && stack.attr("attrs").contains("picture_size"))
+      call.table.picture = stack.attr("attrs")["picture_size"].cast<std::array<int, 2>>();
   } else {
     source_of(stack, name);  // for the name, and so that a stack that cannot be opened is refused first
   }

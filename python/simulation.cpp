@@ -87,13 +87,20 @@ class Run {
                                       run_->scene().phases));
     }
     settle_once(callback);
+    const sim::Scene& scene = run_->scene();
+    const auto left = scene.cycles * scene.phases - static_cast<std::int64_t>(all_->n_frames());
+    if (cycles && most > left)
+      throw RunError(
+          left > 0
+              ? fmt::format("{:g} cycles were requested, but the run has {:g} of its {} cycles left; a scene "
+                            "with a larger time.cycles runs longer.",
+                            *cycles, static_cast<double>(left) / scene.phases, scene.cycles)
+              : fmt::format(
+                    "The run has reached its {} cycles; a scene with a larger time.cycles runs longer.",
+                    scene.cycles));
     SharedFrames these(all_->info());
     Recorder recorder(these, *all_);
     unlocked(callback, [&](Progress& progress) { run_->run(recorder, progress, most); });
-    if (cycles && these.n_frames() == 0)
-      throw RunError(
-          fmt::format("The run has reached its {} cycles; a scene with a larger time.cycles runs longer.",
-                      run_->scene().cycles));
     return std::make_shared<Trajectory>(std::move(these));
   }
 

@@ -33,6 +33,12 @@ std::string needs_spin(const TrajectoryInfo& info) {
 std::string needs_radius(const TrajectoryInfo& info) {
   return info.radius.empty() ? "radii" : "";
 }
+std::string needs_nothing(const TrajectoryInfo& /*info*/) {
+  return "";
+}
+std::string needs_space_and_velocity(const TrajectoryInfo& info) {
+  return info.box.dimension == 3 ? needs_velocity(info) : "three dimensions";
+}
 std::string needs_plane(const TrajectoryInfo& info) {
   return info.box.dimension == 2 ? "" : "a planar cell";
 }
@@ -51,6 +57,12 @@ std::vector<double> vx(const ColouredFrame& at) {
 }
 std::vector<double> vz(const ColouredFrame& at) {
   return each(at, [&](std::size_t i) { return at.frame.velocity[i].z(); });
+}
+std::vector<double> vy(const ColouredFrame& at) {
+  return each(at, [&](std::size_t i) { return at.frame.velocity[i].y(); });
+}
+std::vector<double> height(const ColouredFrame& at) {
+  return each(at, [&](std::size_t i) { return at.frame.position[i].z(); });
 }
 // Of a disc, counter-clockwise in the drawing (Frame::spin); of a sphere, the modulus.
 std::vector<double> spin(const ColouredFrame& at) {
@@ -78,6 +90,14 @@ std::vector<double> force(const ColouredFrame& at) {
   }
   return sum;
 }
+std::vector<double> contacts(const ColouredFrame& at) {
+  std::vector<double> number = each(at, [](std::size_t) { return 0.0; });
+  for (const ContactForce& c : at.frame.contact_forces) {
+    number[static_cast<std::size_t>(c.i)] += 1;
+    if (c.j >= 0) number[static_cast<std::size_t>(c.j)] += 1;
+  }
+  return number;
+}
 std::vector<double> cycle_displacement(const ColouredFrame& at) {
   const auto cycle = static_cast<std::size_t>(at.source.info().phases_per_cycle);
   Frame before;
@@ -96,13 +116,16 @@ const std::vector<Colouring>& colourings() {
   static const std::vector<Colouring> table = {
       {"speed", "sigma/t0", "modulus of the velocity", needs_velocity, speed},
       {"vx", "sigma/t0", "velocity to the right", needs_velocity, vx},
+      {"vy", "sigma/t0", "velocity to the back", needs_space_and_velocity, vy},
       {"vz", "sigma/t0", "velocity upwards", needs_velocity, vz},
+      {"height", "sigma", "height of the centre above the mean height of the plate", needs_nothing, height},
       {"spin", "1/t0", "angular velocity; of discs counter-clockwise, of spheres the modulus", needs_spin,
        spin},
       {"radius", "sigma", "radius", needs_radius, radius},
       {"q6", "", "bond order q6 (analyze)", needs_plane, q6},
       {"psi6", "", "modulus of the bond order psi6 (analyze)", needs_plane, psi6},
       {"force", "m g", "sum of the normal forces at the contacts", needs_contacts, force},
+      {"contacts", "", "number of contacts, with walls", needs_contacts, contacts},
       {"cycle-displacement", "sigma", "distance from the position one cycle before", needs_cycles,
        cycle_displacement},
   };

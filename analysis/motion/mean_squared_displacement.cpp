@@ -16,12 +16,17 @@ const char* const kSource = "Allen & Tildesley, Computer Simulation of Liquids, 
 class MeanSquaredDisplacement : public Observable {
  public:
   explicit MeanSquaredDisplacement(const AnalysisContext& context)
-      : info_(context.info), past_(kLongestLag), msd_(kLongestLag) {}
+      : info_(context.info),
+        interval_(context.info.columns.phase ? 1 : 0),
+        past_(kLongestLag),
+        msd_(kLongestLag) {}
 
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
-    if (frame.phase != 0 || frame.cycle < 0) return;
-    past_.add(static_cast<double>(frame.cycle), of_present(frame, frame.position, info_.box), 1,
+    if (info_.columns.phase && (frame.phase != 0 || frame.cycle < 0)) return;
+    const double at = info_.columns.phase ? static_cast<double>(frame.cycle) : frame.time;
+    if (!info_.columns.phase && !past_.empty() && !(interval_ > 0)) interval_ = at - past_.last();
+    past_.add(at, of_present(frame, frame.position, info_.box), interval_,
               [&](std::size_t lag, const std::vector<Vec3>& before, const std::vector<Vec3>& now) {
                 if (lag > 0) add_pair(before, now, lag - 1);
               });
@@ -32,19 +37,24 @@ class MeanSquaredDisplacement : public Observable {
     std::iota(lags.begin(), lags.end(), 1.0);
     const std::string none = info_.columns.phase
                                  ? "no bead is seen at phase 0 of two cycles that are at most 32 apart"
-                                 : "the frames have no drive phase";
+                                 : "no bead is seen in two frames that are at most 32 apart";
+    const std::string relative = ", relative to the mean displacement of the beads";
     std::vector<Result> all = array_with_interval(
         msd_,
         {.name = "msd",
          .unit = "sigma^2",
          .n_of = "lags",
-         .convention = "phase 0 of whole cycles, relative to the mean displacement of the beads",
+         .convention =
+             (info_.columns.phase ? "phase 0 of whole cycles" : "frames, which have no phase") + relative,
          .source = kSource},
-        "pairs of cycles", none);
-    all.push_back(
-        all.front().present()
-            ? array_of(lags, {.name = "msd_lag", .unit = "cycles", .n_of = "lags", .source = kSource}, none)
-            : absent_result("msd_lag", none, kSource));
+        info_.columns.phase ? "pairs of cycles" : "pairs of frames", none);
+    all.push_back(all.front().present() ? array_of(lags,
+                                                   {.name = "msd_lag",
+                                                    .unit = info_.columns.phase ? "cycles" : "frames",
+                                                    .n_of = "lags",
+                                                    .source = kSource},
+                                                   none)
+                                        : absent_result("msd_lag", none, kSource));
     return all;
   }
 
@@ -68,7 +78,8 @@ class MeanSquaredDisplacement : public Observable {
   }
 
   const TrajectoryInfo& info_;
-  LaggedVectors past_;  ///< positions by cycle
+  double interval_;     ///< between cycles, 1; without phases between the first two frames, t0
+  LaggedVectors past_;  ///< positions by cycle, or by time
   std::vector<RatioAverage> msd_;
 };
 

@@ -22,7 +22,8 @@ inline constexpr std::size_t kLongestLag = 32;  ///< cycles
 ///   cycles (NaN before)
 /// - msd_lag: [lags] m, cycles
 ///
-/// In two dimensions d = 2 (x and z). Absent without drive phases.
+/// In two dimensions d = 2 (x and z). Without drive phases all frames count, and m is in intervals between
+/// frames ("frames").
 extern const ObservableEntry mean_squared_displacement_observable;
 
 }  // namespace twincell::analysis

@@ -61,6 +61,7 @@ bool Region::cuts(double x, double y, double radius) const {
 bool RegionFrames::next(cv::Mat& frame) {
   cv::Mat whole;
   if (!frames_.next(whole)) return false;
+  whole_size_ = whole.size();
   frame = region_.seen(whole);
   return true;
 }

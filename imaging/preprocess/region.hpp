@@ -38,10 +38,13 @@ class RegionFrames : public FrameSource {
   [[nodiscard]] std::string current() const override { return frames_.current(); }
   [[nodiscard]] StackInfo info() const override { return frames_.info(); }
   [[nodiscard]] std::optional<double> time_s() const override { return frames_.time_s(); }
+  /// Size of the whole picture of the last frame; 0 x 0 before the first.
+  [[nodiscard]] cv::Size whole_size() const { return whole_size_; }
 
  private:
   FrameSource& frames_;
   const Region& region_;
+  cv::Size whole_size_;
 };
 
 }  // namespace twincell::imaging

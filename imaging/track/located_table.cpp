@@ -173,9 +173,7 @@ class BeadRows {
   [[nodiscard]] TrackedBead bead(std::size_t row) const {
     constexpr double kMaxCoordinate = 1e6;  // px
     TrackedBead b{.x_px = x_[row], .y_px = y_[row]};
-    b.radius_px = radius_ != nullptr     ? (*radius_)[row]
-                  : diameter_ != nullptr ? (*diameter_)[row] / 2
-                                         : diameter_px_ / 2;
+    b.radius_px = radius_of(row);
     constexpr double kSameSize = 0.05;  // of numbers with few digits, as in the other tables of beads
     if (radius_ != nullptr && diameter_ != nullptr &&
         !(std::abs(2 * b.radius_px - (*diameter_)[row]) <= kSameSize * (*diameter_)[row]))
@@ -197,18 +195,27 @@ class BeadRows {
     return b;
   }
 
-  /// \throws InputError for a bead outside the picture
+  /// \throws InputError for a bead of which nothing is in the picture
   void require_inside(const std::vector<std::size_t>& rows, int width, int height) const {
+    const auto is_within = [&](std::size_t row, double at, int pixels) {
+      const double beyond = 0.5 + std::max(0.0, radius_of(row));
+      return at >= -beyond && at < pixels - 1 + beyond;
+    };
     const auto is_outside = [&](std::size_t row) {
-      return !(x_[row] >= -0.5 && x_[row] < width - 0.5 && y_[row] >= -0.5 && y_[row] < height - 0.5);
+      return !is_within(row, x_[row], width) || !is_within(row, y_[row], height);
     };
     if (const auto found = std::ranges::find_if(rows, is_outside); found != rows.end())
-      columns_.refuse(*found, x_[*found] >= -0.5 && x_[*found] < width - 0.5 ? "y" : "x",
+      columns_.refuse(*found, is_within(*found, x_[*found], width) ? "y" : "x",
                       fmt::format("the bead at {:g}, {:g} is outside the picture of {} x {} px.", x_[*found],
                                   y_[*found], width, height));
   }
 
  private:
+  [[nodiscard]] double radius_of(std::size_t row) const {
+    return radius_ != nullptr ? (*radius_)[row]
+                              : (diameter_ != nullptr ? (*diameter_)[row] : diameter_px_) / 2;
+  }
+
   const Columns& columns_;
   const std::vector<double>&x_, &y_;
   const std::vector<double>*radius_, *diameter_, *sigma_x_, *sigma_y_, *tracer_;  // null: no such column

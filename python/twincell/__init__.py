@@ -14,8 +14,8 @@ from ._frames import Frames, open_frames
 from ._locating import locate
 from ._program import (
     calibrate_beads, calibrate_camera, calibrate_contacts_bounce, calibrate_contacts_collisions,
-    calibrate_contacts_infer, calibrate_contacts_numbers, calibrate_plate, calibrate_walls, compare, draw, export, import_,
-    match, render, reproduce)
+    calibrate_contacts_infer, calibrate_contacts_numbers, calibrate_plate, calibrate_walls, compare, draw, export, import_, info,
+    match, measure, new, render, reproduce, validate)
 from ._scenes import simulate
 
 _name_functions(globals())
@@ -25,6 +25,6 @@ __all__ = [
     "Scene", "Simulation", "Trajectory", "Window", "__version__", "analyze", "analyze_windows", "bond_order", "calibrate_beads",
     "calibrate_camera", "calibrate_contacts_bounce", "calibrate_contacts_collisions", "calibrate_contacts_infer",
     "calibrate_contacts_numbers", "calibrate_plate", "calibrate_walls", "compare", "coordination", "draw", "export", "fit",
-    "hexatic_order", "import_", "laws", "locate", "match", "neighbours",
+    "hexatic_order", "import_", "info", "laws", "locate", "match", "measure", "neighbours", "new",
     "number_of_neighbours", "open_frames", "preset_names", "render", "reproduce",
-    "result_names", "simulate", "sweep", "track", "version", "voronoi"]
+    "result_names", "simulate", "sweep", "track", "validate", "version", "voronoi"]

@@ -1,6 +1,7 @@
 """Compiled functions with a signature, and with a name by which pickle, and so multiprocessing, finds them."""
 from __future__ import annotations
 
+import difflib
 import functools
 import inspect
 import types
@@ -18,15 +19,33 @@ def _signature(function):
     return inspect.signature(made[function.__name__])
 
 
+def _known(options, signature, name):
+    """The options by the names of the signature: also with the underscore of range_, which `match` takes.
+
+    TypeError for others, with the nearest name.
+    """
+    known = {}
+    for option, value in options.items():
+        plain = option.rstrip("_")
+        if option not in signature.parameters and plain in signature.parameters and plain not in options:
+            option = plain
+        if option not in signature.parameters:
+            near = difflib.get_close_matches(option, signature.parameters, 1)
+            raise TypeError(f"{name}() has no argument '{option}'" + (f"; did you mean '{near[0]}'?" if near else "."))
+        known[option] = value
+    return known
+
+
 def named(function, name):
     """`function` as the function `name` of the package."""
+    signature = _signature(function)
+
     def call(*args, **options):
-        return function(*args, **options)
+        return function(*args, **(options if signature is None else _known(options, signature, name)))
 
     functools.update_wrapper(call, function)
     del call.__wrapped__  # else inspect asks the compiled function, which has no signature
     call.__module__, call.__qualname__ = __package__, name
-    signature = _signature(function)
     if signature is not None:
         call.__signature__ = signature
     return call

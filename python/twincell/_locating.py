@@ -47,7 +47,7 @@ def locate(stack, diameter=None, *, locator="vote", min_score=0.04, min_explaine
 
     Returns y, x, mass, size, ecc, signal, raw_mass, ep, frame, radius, sigma_x, sigma_y, sigma_radius, score, tracer,
     edge, overlap, in px, one row per bead. `attrs` of the table has "settings" (locate(other, **settings) finds other
-    frames with the same options), "settings_frame", "contrast", "left_out" (candidates left out, by reason) and
+    frames with the same options), "settings_frame", "contrast", "picture_size" (width, height; `track` uses it), "left_out" (candidates left out, by reason) and
     "frames" (one dict per frame).
     """
     import pandas as pd

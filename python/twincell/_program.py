@@ -1,4 +1,5 @@
-"""Verbs that run as the program: match, compare, render, draw, export, import_, reproduce, calibrate_*.
+"""Verbs that run as the program: new, match, compare, measure, info, validate, render, draw, export, import_, reproduce,
+calibrate_*.
 
 These verbs read and write files, and many take hours rather than microseconds. Each function runs the program `twincell` of
 the same installation with the same options and returns its --json document. The numbers are therefore those of the verb.
@@ -127,6 +128,36 @@ def match(*stacks_and_cells, output, callback=None, **options):
     return _run("match", stacks_and_cells, {"output": output, **options}, callback)
 
 
+def new(*stacks, output, callback=None, **options):
+    """A cell file from the frames, with a picture of what was measured: `twincell new` (docs/first_hour.md).
+
+    stacks: one stack, or several of one cell, one for each strength. output: CELL.toml, for several stacks a folder. What the frames do not show
+    stays open, to be filled in; `match` names it. Otherwise as `match`.
+    """
+    return _run("new", stacks, {"output": output, **options}, callback)
+
+
+def measure(scene, *, callback=None, **options):
+    """Runs a scene and analyses it without storing frames: `twincell measure` (docs/running.md).
+
+    scene: Scene or scene file; only="T_g,h_cm" selects results. Otherwise as `match`.
+    """
+    return _run("measure", (scene,), options, callback)
+
+
+def info(file, *, callback=None, **options):
+    """What a file holds: `twincell info`. file: Trajectory, H5MD file, stack or film. Otherwise as `match`."""
+    return _run("info", (file,), options, callback)
+
+
+def validate(trajectory, *, callback=None, **options):
+    """Whether a trajectory file keeps its format and its physical limits: `twincell validate` (docs/h5md.md).
+
+    trajectory: Trajectory or H5MD file. InputError names the first fault. Otherwise as `match`.
+    """
+    return _run("validate", (trajectory,), options, callback)
+
+
 def compare(*, output, callback=None, **options):
     """Experiments and simulations in one report: `twincell compare` (docs/comparing.md).
 
@@ -150,15 +181,32 @@ class Picture(bytes):
         return bytes(self)
 
 
+def _value_table(numbers, folder):
+    """The name of a table of an array (frames, beads) of numbers of beads; NaN: none."""
+    import numpy as np
+
+    numbers = np.asarray(numbers, dtype=float)
+    if numbers.ndim != 2:
+        raise _core.ConfigError(f"colour: has {numbers.ndim} dimensions; it must have two, (frames, beads).")
+    path = Path(folder) / "colour.csv"
+    frame, particle = np.nonzero(np.isfinite(numbers))
+    np.savetxt(path, np.column_stack([frame, particle, numbers[frame, particle]]), fmt=("%d", "%d", "%.17g"), delimiter=",",
+               header="frame,particle,value", comments="")
+    return path
+
+
 def draw(trajectory, *, output=None, callback=None, **options):
     """A trajectory as a picture, a film or a page that plays it, without a camera: `twincell draw` (docs/drawing.md).
 
-    trajectory: Trajectory or H5MD file; output: .png, .mp4, .avi or .html; colour="speed", tracks=5, vectors=True, contacts=True.
+    trajectory: Trajectory or H5MD file; output: .png, .mp4, .avi or .html; colour="speed", or an array (frames, beads) of numbers;
+    tracks=5, vectors=True, contacts=True.
     Without output, the picture of the last frame is returned, which a notebook shows. Otherwise as `match`.
     """
-    if output is not None:
-        return _run("draw", (trajectory,), {"output": output, **options}, callback)
     with tempfile.TemporaryDirectory() as folder:
+        if hasattr(options.get("colour"), "__array__"):
+            options["colour"] = _value_table(options["colour"], folder)
+        if output is not None:
+            return _run("draw", (trajectory,), {"output": output, **options}, callback)
         path = Path(folder) / "picture.png"
         _run("draw", (trajectory,), {"output": path, **options}, callback)
         return Picture(path.read_bytes())

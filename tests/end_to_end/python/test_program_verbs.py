@@ -67,6 +67,39 @@ def test_draw(sim_file, tmp_path):
     assert shown == bytes_of_verb and shown._repr_png_() == bytes_of_verb and shown.startswith(b"\x89PNG")
 
 
+def test_draw_shows_numbers_of_ones_own(sim_file, tmp_path):
+    t = twincell.Trajectory.open(sim_file)
+    z = np.asarray(t.positions)[:, :, 2]
+    by_word = twincell.draw(t, output=tmp_path / "word.png", colour="height")
+    mine = twincell.draw(t, output=tmp_path / "mine.png", colour=z)
+    assert mine["colour"] == "value" and mine["range"] == by_word["range"] == [z[-1].min(), z[-1].max()]
+    with pytest.raises(ValueError, match="colour: has 1 dimensions; it must have two"):
+        twincell.draw(t, colour=z[0])
+
+
+def test_new_measure_info_and_validate(inputs, sim_file, tmp_path):
+    same(twincell.info(sim_file), document("info", sim_file))
+    same(twincell.validate(sim_file), document("validate", sim_file))
+    (tmp_path / "broken.h5").write_bytes(sim_file.read_bytes()[:4000])
+    with pytest.raises(twincell.InputError):
+        twincell.validate(tmp_path / "broken.h5")
+    scene = twincell.Scene.from_dict(SCENE)
+    mine = twincell.measure(scene, only="h_cm")
+    (tmp_path / "scene.toml").write_text(scene.text)
+    verb = document("measure", tmp_path / "scene.toml", "--only", "h_cm")
+    assert mine["results"] == verb["results"]
+    cell = twincell.new(inputs / "frames", output=tmp_path / "mine.toml", sigma_mm=2, drive_hz=11.15)
+    verb = document("new", inputs / "frames", "-o", tmp_path / "verb.toml", "--sigma-mm", "2", "--drive-hz", "11.15")
+    assert (tmp_path / "mine.toml").read_text().splitlines()[3:] == (tmp_path / "verb.toml").read_text().splitlines()[3:]
+    assert cell.keys() == verb.keys()
+
+
+def test_unknown_arguments_are_named(sim_file):
+    with pytest.raises(TypeError, match=r"analyze\(\) has no argument 'discrad'; did you mean 'discard'\?"):
+        twincell.analyze(sim_file, discrad=1)
+    assert twincell.analyze(sim_file, ["h_cm"], discard_=1)["h_cm"].n == twincell.analyze(sim_file, ["h_cm"], discard=1)["h_cm"].n
+
+
 def test_export_and_import(sim_file, tmp_path):
     assert program("export", sim_file, "--to", "csv", "-o", tmp_path / "verb.csv", "-q").returncode == 0
     twincell.export(sim_file, to="csv", output=tmp_path / "mine.csv")

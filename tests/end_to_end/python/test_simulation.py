@@ -66,6 +66,8 @@ def test_stepping_by_hand_is_the_same_run():
     assert len(first) == 10 and np.array_equal(first.positions[-1][:, 2], whole.positions[9][:, 2])
     assert state.dtype.names[:2] == ("x", "z") and not state.flags.owndata
     before = state["z"].copy()
+    with pytest.raises(RuntimeError, match="5 cycles were requested, but the run has 3 of its 4 cycles left"):
+        sim.run(5)
     rest = sim.run()
     assert len(rest) == 30 and len(sim.run()) == 0
     assert not np.array_equal(state["z"], before)  # a view: it shows the bed now

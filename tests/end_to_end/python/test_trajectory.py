@@ -525,6 +525,9 @@ def test_arrays_are_analysed():
     assert np.array_equal(alone, twincell.analyze(points[:1], ["g_r"], box=[20, 20])["g_r"].value, equal_nan=True)
     # A gas in a periodic box: the cells fill it.
     assert results["voronoi_area"].value == pytest.approx(400 / 200, abs=1e-9)
+    # The same points as a trajectory without phases: its frames count as those of the array.
+    t = twincell.Trajectory.from_arrays(points, box=[20, 20])
+    assert twincell.analyze(t, ["msd"])["msd"].value == pytest.approx(results["msd"].value, nan_ok=True)
     with pytest.raises(ValueError, match="box: is that of an array of points"):
         twincell.analyze(twincell.Trajectory.from_arrays(points), box=[20, 20])
     for wrong in (None, 3):

@@ -191,6 +191,32 @@ TEST(MeanSquaredDisplacement, LinearForARandomWalkQuadraticForStreams) {
   }
 }
 
+// Frames that belong to no drive, one of which is missing, give the displacements of the others.
+TEST(MeanSquaredDisplacement, CountsFramesWithoutPhases) {
+  constexpr double kSpeed = 0.1;  // sigma a frame, two streams
+  TrajectoryInfo info = empty(2, Vec3(50, 1, 50), false).info();
+  info.columns.phase = false;
+  info.phases_per_cycle = 0;
+  info.n_beads = 400;
+  MemoryTrajectory t(info);
+  for (int f = 0; f < 40; ++f) {
+    if (f == 7) continue;
+    Frame frame;
+    frame.step = f;
+    frame.time = 0.04 * f;
+    frame.phase = frame.cycle = -1;
+    for (int i = 0; i < 400; ++i) frame.position.emplace_back(25 + (i % 2 == 0 ? f : -f) * kSpeed, 0, 25);
+    t.append(frame);
+  }
+  const std::vector<Result> all = analyze(t, {.only = {"msd", "msd_lag"}});
+  const Result &msd = find_result(all, "msd"), &lag = find_result(all, "msd_lag");
+  ASSERT_TRUE(msd.present()) << msd.absent;
+  EXPECT_EQ(lag.unit, "frames");
+  for (const std::size_t m : {1U, 2U, 5U, 32U})
+    validate_close("msd of two streams over (v m)^2",
+                   msd.values[m - 1] / std::pow(kSpeed * static_cast<double>(m), 2), 400.0 / 399, 1e-9);
+}
+
 TEST(MeanSquaredDisplacement, LiesInItsInterval) {
   // Random walks of 12 beads over 200 cycles: 2 d D m T is inside 95 % of the intervals.
   constexpr double kStep = 0.1;
