@@ -259,7 +259,7 @@ void run(const Common& common, const AnalyzeOptions& options) {
     if (readers.back()->n_frames() == 0)
       throw InputError({.file = file, .key = {}}, "the trajectory contains no frame");
   }
-  analysis::require_one_condition(trajectories);
+  for (const std::string& doubt : analysis::require_one_condition(trajectories)) note(common, doubt);
   for (const TrajectorySource* trajectory : trajectories) {
     note_trajectory(common, *trajectory);
     note_drive(common, *trajectory);

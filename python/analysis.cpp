@@ -68,7 +68,7 @@ Results analyzed(const std::vector<std::shared_ptr<Trajectory>>& trajectories,
       provenance.inputs.emplace_back(t->source().name());
   }
   if (sources.empty()) throw ConfigError({.file = {}, .key = "trajectory"}, "the list has no trajectory.");
-  analysis::require_one_condition(sources);
+  for (const std::string& doubt : analysis::require_one_condition(sources)) warn(doubt);
   for (const TrajectorySource* source : sources) warn_of_periods(*source, options);
   return unlocked(callback, [&](Progress& progress) {
     return Results{analysis::analyze_together(sources.size(), options,

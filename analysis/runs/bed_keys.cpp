@@ -6,9 +6,12 @@
 #include <array>
 #include <charconv>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string_view>
 #include <system_error>
+#include <utility>
+
+#include "core/config.hpp"
+#include "core/toml_leaves.hpp"
 
 namespace twincell::analysis {
 
@@ -31,22 +34,15 @@ std::map<std::string, std::string> keys_of(const std::string& provenance_json, W
   if (!provenance.is_object()) return {};
   const auto config = provenance.find("config");
   if (config == provenance.end() || !config->is_string()) return {};
-  // The text was written by this program: one key a line below its table, long lists on several lines.
-  std::map<std::string, std::string> all;
-  std::istringstream lines(config->get<std::string>());
-  std::string table, key;
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t equals = line.find(" = ");
-    if (line.starts_with('[') && line.ends_with(']')) {
-      table = line.substr(1, line.size() - 2) + '.';
-      key.clear();
-    } else if (equals != std::string::npos && line.find_first_of("[{'\" ") >= equals) {
-      key = table + line.substr(0, equals);
-      if (wanted(key)) all[key] = line.substr(equals + 3);
-    } else if (const auto begun = all.find(key); begun != all.end()) {
-      begun->second += line;
-    }
+  const auto text = config->get<std::string>();
+  try {
+    (void)Config::from_text(text, "provenance");
+  } catch (const Error&) {  // of another program
+    return {};
   }
+  std::map<std::string, std::string> all;
+  for (TomlLeaf& leaf : toml_leaves(text, ""))
+    if (wanted(leaf.path)) all[leaf.path] = std::move(leaf.literal);
   for (auto& [name, value] : all) {  // 0.6 instead of 0.59999999999999998
     double number = 0;
     const char* end = value.data() + value.size();

@@ -474,7 +474,7 @@ std::optional<std::pair<std::size_t, std::size_t>> shared_frame(const Arrangemen
 
 }  // namespace
 
-void require_one_condition(const std::vector<const TrajectorySource*>& trajectories) {
+std::vector<std::string> require_one_condition(const std::vector<const TrajectorySource*>& trajectories) {
   constexpr double kSameDrive = 0.02, kSameBeads = 0.1;
   const auto refuse = [](const TrajectorySource& a, const TrajectorySource& b, const std::string& why) {
     throw ConfigError({.file = b.name(), .key = {}},
@@ -482,6 +482,7 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
   };
   std::vector<RunEnds> ends;
   std::vector<std::map<std::string, std::string>> keys, motions;
+  std::vector<std::string> doubts;
   for (const TrajectorySource* t : trajectories) {
     ends.emplace_back(*t);
     motions.push_back(motion_keys(t->info().provenance_json));
@@ -528,6 +529,11 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
         return at == keys[run].end() ? std::string("not stated") : at->second;
       };
       for (const std::string& key : named) words(key + " is", said(0, key), said(i, key));
+    } else if (keys[0].empty() != keys[i].empty()) {
+      doubts.push_back(
+          fmt::format("{} does not contain its scene: whether its beads, contacts and cell are those of {} "
+                      "is not checked.",
+                      (keys[0].empty() ? a : b).name(), (keys[0].empty() ? b : a).name()));
     }
     for (std::size_t k = 0; k < i; ++k)
       if (ends[k].of_same_run(ends[i]))
@@ -553,6 +559,7 @@ void require_one_condition(const std::vector<const TrajectorySource*>& trajector
                         "of one run; another seed or repeat is needed to measure the scatter",
                         frames->first, frames->second));
   }
+  return doubts;
 }
 
 }  // namespace twincell::analysis

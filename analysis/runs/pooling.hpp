@@ -69,6 +69,8 @@ struct RunEnds {
 /// provenance of both contains a scene, a key of its tables contact, beads or cell (bed_keys); or if both
 /// contain the same run, bead for bead, or a frame in common, except their first ones
 /// \pre every trajectory has frames
-void require_one_condition(const std::vector<const TrajectorySource*>& trajectories);
+/// \returns a sentence for each run whose scene is unknown while that of another is known: what was not
+/// compared
+std::vector<std::string> require_one_condition(const std::vector<const TrajectorySource*>& trajectories);
 
 }  // namespace twincell::analysis
