@@ -169,6 +169,34 @@ TEST(IncludeGraph, NoCycleOfRooms) {
   EXPECT_EQ(cycle_of(graph_of(all_includes(), room_of)), "");
 }
 
+/// The rooms of a top folder in the order of its CMakeLists.txt; empty if it has none.
+std::vector<std::string> rooms_of(const std::string& top) {
+  const std::string cmake = text_of(kRoot / top / "CMakeLists.txt");
+  const std::size_t begin = cmake.find("ROOMS ");
+  if (begin == std::string::npos) return {};
+  std::istringstream words(cmake.substr(begin + 6, cmake.find('\n', begin) - begin - 6));
+  std::vector<std::string> rooms;
+  for (std::string word; words >> word;)
+    if (word.find('/') == std::string::npos) rooms.push_back(word == "." ? top : top + "/" + word);
+  return rooms;
+}
+
+// The list ROOMS of a CMakeLists.txt is the order of the rooms: each may know those before it.
+TEST(IncludeGraph, RoomsKnowOnlyEarlierRooms) {
+  std::map<std::string, std::size_t> place;
+  for (const auto& [top, allowed] : kAllowed) {
+    const std::vector<std::string> rooms = rooms_of(top);
+    for (std::size_t k = 0; k < rooms.size(); ++k) place[rooms[k]] = k;
+  }
+  ASSERT_GT(place.size(), 35U);
+  for (const Include& i : all_includes()) {
+    const auto from = place.find(room_of(i.file)), to = place.find(room_of(i.target));
+    if (!i.quoted || from == place.end() || to == place.end() || top_of(i.file) != top_of(i.target)) continue;
+    EXPECT_LE(to->second, from->second) << i.file << " includes " << i.target << ": " << to->first
+                                        << " comes after " << from->first << " in ROOMS";
+  }
+}
+
 TEST(IncludeGraph, NoCycleOfModules) {
   EXPECT_EQ(cycle_of(graph_of(all_includes(), module_of)), "");
 }
