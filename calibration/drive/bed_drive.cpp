@@ -86,17 +86,20 @@ Fit fit_steps(const std::vector<BedSteps::Step>& all, double from, double to) {
   return fit;
 }
 
+/// Height, in amplitudes above the plate, of a body that flies since sin th = 1/Gamma. \pre Gamma > 1
+double height_of_flight(double gamma, double th) {
+  const double off = std::asin(1 / gamma), since = th - off;
+  return std::sin(off) + std::cos(off) * since - since * since / (2 * gamma) - std::sin(th);
+}
+
 }  // namespace
 
 std::optional<TimeOnPlate> time_on_plate(double gamma) {
   if (gamma <= 1) return TimeOnPlate{};
   const double off = std::asin(1 / gamma);
-  const auto height = [&](double th) {
-    return std::sin(off) + std::cos(off) * (th - off) - (th - off) * (th - off) / (2 * gamma) - std::sin(th);
-  };
   constexpr double kStep = 1e-3;
   for (double th = off + 2 * kStep; th < off + kTurn; th += kStep)
-    if (height(th) < 0) return TimeOnPlate{th / kTurn - 1, off / kTurn};
+    if (height_of_flight(gamma, th) < 0) return TimeOnPlate{th / kTurn - 1, off / kTurn};
   return std::nullopt;
 }
 
@@ -256,6 +259,75 @@ bool moves_as_one(const std::vector<BedSteps::Step>& steps) {
   return spreads < kMaxSpread * kMaxSpread * squares;
 }
 
+/// A sine of the plate's period through the steps of a bed, one step for each phase.
+struct Sine {
+  double a = 0, b = 0;  ///< a sin th + b cos th
+  double misfit = 1;    ///< rms departure, relative to the steps
+};
+
+/// Of the means over the cycles, or nothing if a phase was not seen.
+std::optional<Sine> sine_through(const std::vector<BedSteps::Step>& steps, int phases_per_cycle) {
+  struct Mean {
+    double s = 0, c = 0, dz = 0, n = 0;
+  };
+  std::map<std::int32_t, Mean> phases;
+  for (const BedSteps::Step& step : steps) {
+    Mean& mean = phases[step.phase];
+    mean.s += std::sin(kTurn * step.end) - std::sin(kTurn * step.begin);
+    mean.c += std::cos(kTurn * step.end) - std::cos(kTurn * step.begin);
+    mean.dz += step.dz, mean.n += 1;
+  }
+  if (phases.size() < static_cast<std::size_t>(phases_per_cycle)) return std::nullopt;
+  double ss = 0, sc = 0, cc = 0, sz = 0, cz = 0, zz = 0;
+  for (const auto& [phase, mean] : phases) {
+    const double s = mean.s / mean.n, c = mean.c / mean.n, dz = mean.dz / mean.n;
+    ss += s * s, sc += s * c, cc += c * c, sz += s * dz, cz += c * dz, zz += dz * dz;
+  }
+  const double det = ss * cc - sc * sc;
+  if (!(det > 0 && zz > 0)) return std::nullopt;
+  Sine sine{.a = (sz * cc - cz * sc) / det, .b = (cz * ss - sz * sc) / det};
+  sine.misfit = std::sqrt(std::max(0.0, zz - sine.a * sz - sine.b * cz) / zz);
+  return sine;
+}
+
+/// The same of a body without rebound on the plate, seen at the same phases. \pre 1 < Gamma, flights within
+/// a cycle
+std::optional<Sine> sine_through_flight(std::vector<BedSteps::Step> steps, int phases_per_cycle,
+                                        double gamma) {
+  const TimeOnPlate on = time_on_plate(gamma).value_or(TimeOnPlate{});
+  const auto height = [&](double cycles) {
+    const double since = cycles - on.to - std::floor(cycles - on.to);  // the take-off
+    return std::sin(kTurn * cycles) +
+           (since < 1 + on.from - on.to ? height_of_flight(gamma, kTurn * (on.to + since)) : 0);
+  };
+  for (BedSteps::Step& step : steps) step.dz = height(step.end) - height(step.begin);
+  return sine_through(steps, phases_per_cycle);
+}
+
+/// A bed that follows its plate over the whole cycle, although a plate of the stated strength throws it. The
+/// departure from a sine is compared with that of a bed without rebound; errors of the centres only increase
+/// it.
+std::string rest_on_strong_plate(const std::vector<BedSteps::Step>& steps, const Drive& drive,
+                                 int phases_per_cycle) {
+  constexpr double kMargin = 1.1;    // ratio of Gamma: side walls, liquid, the error of the frequency
+  constexpr double kLongFlight = 3;  // Gamma; above, a flight can outlast a cycle
+  constexpr int kMinPhases = 8;      // per cycle; with fewer, a flight is between two frames
+  constexpr double kMaxShare = 0.5;  // of the departure of a bed that is thrown
+  constexpr double kMaxApart = 0.1;  // relative difference of the amplitudes of bed and plate
+  const double gamma = std::min(drive.gamma() / kMargin, kLongFlight);
+  if (gamma <= 1 || phases_per_cycle < kMinPhases) return {};
+  const auto bed = sine_through(steps, phases_per_cycle);
+  const auto thrown = sine_through_flight(steps, phases_per_cycle, gamma);
+  if (!bed || !thrown || std::abs(bed->a / drive.amplitude - 1) > kMaxApart ||
+      std::abs(bed->b) > kMaxPhaseError * bed->a || bed->misfit > kMaxShare * thrown->misfit)
+    return {};
+  return fmt::format(
+      "the bed follows its plate over the whole cycle, with departures of {:.2g} % of its steps, but a plate "
+      "with Gamma = {:.3g} throws it, with departures of {:.2g} % at least: the frequency, the frame rate or "
+      "the scale is wrong, unless the beads stick to the plate",
+      100 * bed->misfit, drive.gamma(), 100 * thrown->misfit);
+}
+
 /// The observation that contradicts any drive of this strength, as a clause; otherwise empty.
 std::string contradiction_of(const std::vector<BedSteps::Step>& steps, const Drive& drive,
                              int phases_per_cycle) {
@@ -270,6 +342,7 @@ std::string contradiction_of(const std::vector<BedSteps::Step>& steps, const Dri
   if (moved < kMinMotion * kMinMotion * of_plate)
     return fmt::format("the beads stand still in the frames, but the cell states a plate of A = {:.4g} sigma",
                        drive.amplitude);
+  if (std::string why = rest_on_strong_plate(steps, drive, phases_per_cycle); !why.empty()) return why;
   const std::vector<Acceleration> all = accelerations(steps, drive);
   const auto fall =
       std::min_element(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.mean < b.mean; });

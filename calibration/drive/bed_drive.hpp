@@ -67,15 +67,16 @@ struct BedDrive {
 /// Fits the amplitude to the steps of the bed. Of several solutions it returns the one closest to the stated
 /// amplitude. If the bed moves like a plate at no phase, the phases are shifted by whole frames; a shift is
 /// accepted if it alone (or one of two neighbours) makes the bed move like a plate of the stated amplitude
-/// within a tenth. A contradiction is a bed that stands still, or whose downward acceleration at some phase
-/// is more than 1.5 times the larger of gravity and the plate's acceleration.
-/// \pre `info` states the drive
+/// within a tenth. A contradiction is a bed that stands still, that follows over the whole cycle a plate
+/// which would throw it, or whose downward acceleration at some phase is more than 1.5 times the larger of
+/// gravity and the plate's acceleration. \pre `info` states the drive
 BedDrive drive_of_bed(const BedSteps& bed, const TrajectoryInfo& info);
 
 /// What in the motion of a bed contradicts its drive, where the plate in the picture agrees with the
 /// amplitude and the phases: it stands still; it falls faster than gravity, or by less than half of it where
-/// Gamma > 1.3 throws it, or by more than 2 g for an eighth of a cycle; or it leaves a plate with
-/// Gamma < 0.95.
+/// Gamma > 1.3 throws it, or by more than 2 g for an eighth of a cycle; it leaves a plate with Gamma < 0.95;
+/// or it follows a plate over the whole cycle that throws it, with less than half the departures of a bed
+/// without rebound at Gamma/1.1. The last needs a single cycle of at least eight phases.
 ///
 /// \pre the trajectory has a drive with gravity
 /// \returns a clause; empty if nothing does, or if the drive is not a sine or the frames have no phases

@@ -536,6 +536,25 @@ TEST(Match, StatedFrequencyIsCheckedAgainstThePlate) {
     expect_the_drive_checked(kStack, stated, "the plate in the frames");
 }
 
+// Two cycles without a frame rate show no hertz, but a bed that is not thrown.
+TEST(Match, AFrequencyThatWouldThrowTheBedIsRefused) {
+  const TemporaryFolder folder;
+  const fs::path with_rate =
+      laboratory_cell(kStack, folder / "rate.toml",
+                      fmt::format("amplitude_sigma = 0.9\nfrequency_hz = {:.6g}\n", 2 * kHertz));
+  const fs::path cell = folder / "cell.toml";
+  std::ifstream in(with_rate);
+  std::ofstream out(cell);
+  for (std::string line; std::getline(in, line);)
+    if (!line.starts_with("frame_rate_hz")) out << line << "\n";
+  out.close();
+  const Ran refused = run_program({"match", kStack, cell, "-o", folder / "twin", "--twins", "1", "--no-film",
+                                   "--set", "time.steps_per_contact=20", "-q"});
+  EXPECT_EQ(refused.code, 2) << refused.err;
+  EXPECT_NE(refused.err.find("the bed follows its plate over the whole cycle"), std::string::npos)
+      << refused.err;
+}
+
 TEST(Match, DriveInLaboratoryUnitsIsCheckedAgainstTheBed) {
   const TemporaryFolder folder;
   const fs::path stack = film_above_plate(folder, 0.9, 1);

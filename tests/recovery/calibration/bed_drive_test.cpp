@@ -197,6 +197,64 @@ TEST(BedDrive, AWrongFrequencyContradictsTheFallOfTheBed) {
     }
 }
 
+/// What contradicts a drive of `frequency` times the true one in the frames from `first` to `last`, of which
+/// every `every`-th is kept.
+std::string contradiction_seen(const MemoryTrajectory& film, double frequency, std::size_t first,
+                               std::size_t last, int every) {
+  TrajectoryInfo info = film.info();
+  info.drive->omega *= frequency;
+  info.phases_per_cycle /= every;
+  BedSteps steps(info);
+  for (std::size_t f = first; f < std::min(last, film.n_frames()); f += static_cast<std::size_t>(every)) {
+    Frame frame = film.frames()[f];
+    frame.time /= frequency;
+    frame.phase /= every;
+    frame.step /= every;
+    steps.append(frame);
+  }
+  return contradiction_of_bed(steps, info);
+}
+
+// A bed that follows its plate over the whole cycle is accelerated downwards by the plate's acceleration.
+TEST(BedDrive, ABedThatIsNotThrownContradictsAStrongPlate) {
+  for (const double gamma : {0.5, 0.9})
+    for (const int layers : {4, 10, 20}) {
+      const MemoryTrajectory film = seen(simulated(bed(gamma, 1, "random", layers)), 0.2, 1);
+      const std::string what =
+          std::to_string(gamma) + ", " + std::to_string(layers) + " layers, frequency x ";
+      const auto frames = static_cast<std::size_t>(film.info().phases_per_cycle);
+      for (const double stated : {1.5, 2.0, 3.6, 35.0}) {
+        const double frequency = std::sqrt(stated / gamma);
+        for (const std::size_t cycles : {2U, 8U})
+          EXPECT_NE(
+              contradiction_seen(film, frequency, 0, cycles * frames, 1).find("the bed follows its plate"),
+              std::string::npos)
+              << what << frequency << ", " << cycles << " cycles";
+        EXPECT_NE(contradiction_seen(film, frequency, 0, 8 * frames, 2).find("the bed follows its plate"),
+                  std::string::npos)
+            << what << frequency << ", every second frame";
+      }
+    }
+}
+
+// Short flights of a fraction of a bead, two cycles and coarse frames are no contradiction.
+TEST(BedDrive, TheRightFrequencyIsContradictedByNoBed) {
+  std::string finer = "phases = 40";
+  for (const double gamma : {0.5, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4, 1.6, 2.0, 3.0})
+    for (const int layers : {4, 10, 20}) {
+      std::string scene = bed(gamma, 3, "random", layers);
+      scene.replace(scene.find("phases = 20"), finer.size(), finer);
+      const MemoryTrajectory film = seen(simulated(scene), 0.2, 1);
+      for (const int every : {1, 2, 4, 5})
+        for (const std::size_t first : {0U, 80U, 160U})
+          for (const std::size_t length : {80U, 120U, 320U})
+            for (const double frequency : {1.0, 1.03})
+              EXPECT_EQ(contradiction_seen(film, frequency, first, first + length, every), "")
+                  << gamma << ", " << layers << " layers, every " << every << ". frame from " << first << ", "
+                  << length << " frames, frequency x " << frequency;
+    }
+}
+
 TEST(BedDrive, RigidBedIsExactWithinItsStatedError) {
   // The bed has a closed form and noise of 0.02 sigma. The errors must be small, and the differences must
   // agree with them.
