@@ -116,17 +116,23 @@ std::optional<double> lower_of(Sign sign) {
   return sign == Sign::any ? std::nullopt : std::optional(0.0);
 }
 
+/// The key of [scale] beside which the plain key of a quantity has no clear unit; empty if there is none.
+/// Gravity alone sets no unit of length, but one who states it thinks in seconds.
+std::string ambiguous_beside(const Quantity& q, const ConfigSection& scale) {
+  if (!q.has_dimension) return {};
+  for (const char* sigma : {"sigma_mm", "sigma_m"})
+    if (scale.has(sigma)) return std::string("scale.") + sigma;
+  return q.unit != Unit::length_mm && scale.has("gravity_m_s2") ? "scale.gravity_m_s2" : "";
+}
+
 void refuse_bare_numbers(const Config& config) {
   const auto scale = table_at(config, "scale");
   if (!scale) return;
-  for (const char* sigma : {"sigma_mm", "sigma_m"}) {
-    if (!scale->has(sigma)) continue;
-    for (const auto& [section, q] : bare_keys())
+  for (const auto& [section, q] : bare_keys())
+    if (const std::string key = ambiguous_beside(*q, *scale); !key.empty())
       if (const auto table = table_at(config, section); table && table->has(q->plain))
-        refuse_bare(table->where(q->plain), table->number(q->plain).value_or(0),
-                    std::string("scale.") + sigma, path_of(section, q->reduced),
-                    path_of(section, q->physical));
-  }
+        refuse_bare(table->where(q->plain), table->number(q->plain).value_or(0), key,
+                    path_of(section, q->reduced), path_of(section, q->physical));
 }
 
 }  // namespace
@@ -252,14 +258,16 @@ void displace_third_quantity(Config& config, const std::vector<std::string>& ass
 
 std::string resolved_text(Config& config) {
   const auto scale = table_at(config, "scale");
-  if (!scale || !scale->has("sigma_m")) return config.text();
+  if (!scale) return config.text();
   std::vector<BareKey> renamed;
-  for (const BareKey& key : bare_keys())
+  for (const BareKey& key : bare_keys()) {
+    if (ambiguous_beside(*key.quantity, *scale).empty()) continue;
     if (const auto table = table_at(config, key.section); table && table->has(key.quantity->plain)) {
       config.restate(path_of(key.section, key.quantity->plain), path_of(key.section, key.quantity->reduced),
                      *table->number(key.quantity->plain));
       renamed.push_back(key);
     }
+  }
   std::string text = config.text();
   for (const auto& [section, q] : renamed)
     config.restate(path_of(section, q->reduced), path_of(section, q->plain),

@@ -39,8 +39,8 @@ double reduced_quantity(double value, Unit unit, const Scale& scale, const Where
 /// Replaces every key with a unit by its plain reduced key. Error messages about the quantity still name the
 /// key and the line that the user wrote. `peak_acceleration_g` is in units of the scene's gravity.
 /// \throws ConfigError for a value out of range; for a laboratory unit whose conversion requires an absent
-/// key of [scale]; for two spellings of one quantity; and, if [scale] sets sigma, for a plain key of the
-/// table above except gamma, since its unit is then ambiguous
+/// key of [scale]; for two spellings of one quantity; and for a plain key of the table above except gamma,
+/// since its unit is then ambiguous, if [scale] sets sigma, or if it sets gravity and the key is no length
 void reduce_units(Config& config);
 
 /// Prepares the assignment "section.key=value": removes from `config` every spelling of the quantity that it
@@ -54,8 +54,8 @@ void displace_spellings(Config& config, const std::string& assignment);
 /// \pre displace_spellings was called for each assignment
 void displace_third_quantity(Config& config, const std::vector<std::string>& assignments);
 
-/// The configuration as TOML that has the same meaning when it is read again. If [scale] sets sigma, the
-/// quantities of the table above are written under their explicit reduced keys.
+/// The configuration as TOML that has the same meaning when it is read again. Quantities whose plain keys
+/// reduce_units refuses are written under their explicit reduced keys.
 /// \pre reduce_units was called
 std::string resolved_text(Config& config);
 

@@ -86,8 +86,8 @@ const KeyTable& cell_keys() {
           "t0 = √(σ/g), v0 = √(σ g).",
       .notes = {{"drive", "Two quantities determine A and ω; a third must agree."},
                 {"scale",
-                 "If σ is stated here, a length, time or velocity without a unit in its name is "
-                 "refused as ambiguous."}},
+                 "If σ is stated here, a length, time or velocity without a unit in its name is refused as "
+                 "ambiguous; beside gravity alone, a time or velocity."}},
       .rows = rows(),
       .read = [](const std::vector<std::string>& assignments) { (void)read_cell("", assignments); }};
   return table;

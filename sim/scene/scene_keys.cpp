@@ -445,8 +445,8 @@ const KeyTable& scene_keys() {
       .intro =
           "What `simulate`, `explain` and `measure` run, and the keys of a sweep's axes (docs/scene.md). "
           "Lengths are in bead diameters σ, times in t0 = √(σ/g), masses in bead masses m; v0 = √(σ g). "
-          "A length, time or velocity without a unit in its name is refused if [scale] states σ, since "
-          "it does not say whether millimetres or diameters are meant.",
+          "A length, time or velocity without a unit in its name is refused if [scale] states σ, and a "
+          "time or velocity if it states gravity, since it does not say which unit is meant.",
       .notes =
           {{"beads.intruder", "One large bead; it occupies the last slot."},
            {"contact",

@@ -2,6 +2,8 @@
 // with a scale.
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "core/atomic_file.hpp"
 #include "imaging/cell/cell.hpp"
 #include "sim/scene/read_scene.hpp"
@@ -162,6 +164,26 @@ TEST(Quantities, LengthsOfASceneInMillimetres) {
   EXPECT_EQ(again.resolved, scene.resolved);
   EXPECT_EQ(again.radius, scene.radius);
   EXPECT_EQ(again.intruder->z, scene.intruder->z);
+}
+
+// Who states gravity in m/s^2 may well mean hertz.
+TEST(Quantities, ABareFrequencyBesideGravityAloneIsRefused) {
+  const std::string gravity = "[scale]\ngravity_m_s2 = 9.81\n";
+  for (const auto& [key, reduced, physical] :
+       {std::array{"frequency", "frequency_per_t0", "frequency_hz"},
+        std::array{"omega", "omega_per_t0", "omega_rad_s"},
+        std::array{"peak_velocity", "peak_velocity_v0", "peak_velocity_mm_s"}}) {
+    const std::string said =
+        complaint_of_cell("[drive]\namplitude = 1\n" + std::string(key) + " = 8\n" + gravity);
+    expect_says(said, "drive." + std::string(key) + ": is 8 without a unit although scale.gravity_m_s2");
+    expect_says(said, reduced);
+    expect_says(said, physical);
+  }
+  // A length has no laboratory unit there, and what was read can be read again.
+  const imaging::CellDescription cell = cell_of("[drive]\namplitude = 1\nomega_per_t0 = 2\n" + gravity);
+  EXPECT_EQ(cell.drive()->omega, 2);
+  expect_says(cell.text, "omega_per_t0 = 2");
+  EXPECT_EQ(cell_of(cell.text).drive()->omega, 2);
 }
 
 TEST(Quantities, ABareLengthOfASceneBesideItsScaleIsRefused) {
