@@ -163,6 +163,21 @@ void compare_amplitude(DriveCheck& check, const std::string& what, double stated
                     check.amplitude, check.amplitude_error, stated,
                     is_about(stated, 2 * check.amplitude) ? ", twice as much, as from peak to peak" : "");
 }
+
+/// Notes a difference that compare_amplitude() lets pass, where it is far beyond the errors of a plate's
+/// edge. Numbers that depend on A then differ by as much from those of the film.
+void doubt_amplitude(DriveCheck& check, double stated, double scale) {
+  constexpr double kNotableShare = 0.005, kNotable_px = 0.05;
+  const double off = std::abs(check.amplitude - stated);
+  if (!check.disagreement.empty() || off <= std::max({kMaxStandardErrors * check.amplitude_error,
+                                                      kNotableShare * stated, kNotable_px / scale}))
+    return;
+  check.doubt = fmt::format(
+      "the plate in the frames moves with A = {:.4g} +- {:.2g} sigma, and the cell states {:.4g}, which is "
+      "{:.2g} errors away: correct drive.amplitude or camera.pixels_per_sigma",
+      check.amplitude, check.amplitude_error, stated, off / check.amplitude_error);
+}
+
 void compare_omega(DriveCheck& check, const std::string& what, const DriveFit& seen, double stated,
                    const std::optional<double>& t0) {
   if (!check.frame_rate_hz || !t0 || !check.disagreement.empty()) return;
@@ -339,6 +354,7 @@ DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::files
     check.amplitude_error = seen.amplitude_error / scale;
     const std::string what = "the plate in the frames";
     compare_amplitude(check, what, drive->amplitude, kMaxRelativeDifference, scale);
+    doubt_amplitude(check, drive->amplitude, scale);
     if (fixed_phases) compare_period(check, what, seen, cell.phase_lock.frames_per_cycle);
     compare_omega(check, what, seen, drive->omega, cell.scale.t0_s());
     compare_harmonic(check, what, seen, *drive);

@@ -39,6 +39,7 @@ CompletedDrive complete_drive(imaging::CellDescription cell, bool phases,
 struct DriveCheck {
   std::string by;                             ///< source of the measured drive: "plate", "bed"; empty: none
   std::string disagreement;                   ///< as one clause; empty if the two agree
+  std::string doubt;                          ///< a smaller difference of the amplitude, as one clause
   std::string not_comparable;                 ///< why the drive was not measured; empty if it was
   double amplitude = 0, amplitude_error = 0;  ///< measured, sigma
   std::optional<double> frame_rate_hz;        ///< of the film, if known
@@ -55,7 +56,8 @@ std::optional<std::string> recorded_disagreement(const TrajectoryInfo& info);
 
 /// Compares the stated drive with the plate's edge in the first three cycles, at least 40 frames: the
 /// amplitude, the period in frames, and omega if frame rate and scale are known. A difference counts if it
-/// exceeds five standard errors, 3 % and 0.3 px (period and omega: five standard errors and 3 %).
+/// exceeds five standard errors, 3 % and 0.3 px (period and omega: five standard errors and 3 %). A smaller
+/// difference of the amplitude is a doubt above five standard errors, 0.5 % and 0.05 px.
 /// \param range the frames of the stack that are read, and to which the phases of the cell refer
 /// \param fixed_phases whether the phases of the frames follow from the stated frames per cycle; otherwise
 /// the period is not compared. Also compares omega with the stated frame rate divided by the stated frames

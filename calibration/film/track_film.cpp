@@ -45,6 +45,7 @@ TrackedFilm planned(FilmedCell filmed, imaging::TrackedStack stack, DriveCheck c
     else
       check.disagreement = contradiction_of_bed(bed, plan.info);
   }
+  if (!check.doubt.empty()) stack.settings_doubts.push_back(check.doubt);
   if (plan.info.drive && filmed.measured_drive.empty()) record(check, plan.info);
   return {std::move(filmed.cell), std::move(stack), std::move(plan), std::move(check)};
 }

@@ -221,6 +221,23 @@ TEST_F(DemoFilm, TheStatedDriveIsThatOfTheChosenFrames) {
     }
 }
 
+// 2 % are no reason to refuse a cell, but 60 errors of the measured amplitude.
+TEST_F(DemoFilm, AnAmplitudeManyErrorsAwayIsNoted) {
+  for (const auto& [set, noted] : {std::pair{"drive.amplitude=0.9", false},
+                                   {"drive.amplitude=0.903", false},
+                                   {"drive.amplitude=0.92", true},
+                                   {"drive.amplitude=0.885", true},
+                                   {"camera.pixels_per_sigma=12.3", true}}) {
+    const Ran ran = track({"--cell", cell_, "--set", set});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(ran.err.find("which is") != std::string::npos &&
+                  ran.err.find("errors away: correct drive.amplitude") != std::string::npos,
+              noted)
+        << set << ": " << ran.err;
+    EXPECT_EQ(ran.err.find("does not fit the film"), std::string::npos) << ran.err;
+  }
+}
+
 // The beads of `locate`, written to a table and linked, are those of the film.
 TEST_F(DemoFilm, ATableOfBeadsIsTrackedAsItsFilm) {
   // Four cycles, which the bed needs to confirm the phases.
