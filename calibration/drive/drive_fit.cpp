@@ -16,6 +16,7 @@
 #include "core/constants.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
+#include "imaging/phase/lost_frame_costs.hpp"
 #include "imaging/phase/sine_slips.hpp"
 #include "imaging/stack/repeated_frames.hpp"
 
@@ -380,29 +381,65 @@ bool slips_in_each_cycle(const imaging::SineSlips& slips, int frames_per_cycle) 
   return places >= kSeveralPerCycle * cycles || std::abs(sum) > kMinCoherence * places;
 }
 
+/// A fit with the frames that it takes for missing or doubled.
+struct Mended {
+  Timed timed;
+  std::int64_t dropped = 0, doubled = 0;
+  double slip_cost = 0;  ///< negative log-odds of these
+};
+
+double cost_of_slips(const std::vector<std::int64_t>& ticks) {
+  double cost = 0;
+  for (std::size_t f = 1; f < ticks.size(); ++f)
+    if (const std::int64_t by = ticks[f] - ticks[f - 1]; by != 1)
+      cost += imaging::kSlipCost +
+              imaging::kFurtherDropCost * static_cast<double>(std::max<std::int64_t>(by - 2, 0));
+  return cost;
+}
+
+/// Negative log-likelihood of the heights where they scatter by `scatter`.
+double unlikelihood(const Mended& m, double scatter) {
+  double cost = m.slip_cost;
+  for (const double r : m.timed.attempt.residuals)
+    cost += std::min(0.5 * (r / scatter) * (r / scatter), imaging::kMaxFrameCost);
+  return cost;
+}
+
 /// Repairs dropped and doubled frames: for each number of frames per cycle, finds the best path of phases and
-/// fits again. The repair is kept where it follows the frames better.
+/// fits again. The likeliest of these fits and the one without repair is kept, with the scatter of the
+/// quietest one for all: a wrong number of frames per cycle follows the heights as well, by a slip per cycle.
 void repair_frames(const std::vector<double>& heights, int frames_per_cycle, Timed& now, DriveFit& lock) {
   const double period = 2 * kPi / now.attempt.fitted.report.values[3];
+  std::vector<Mended> all = {{.timed = std::move(now)}};
   for (const int n : imaging::frames_per_cycle_to_try(frames_per_cycle, period)) {
     const std::optional<imaging::SineSlips> slips = imaging::fit_sine_with_slips(heights, n);
     if (!slips || slips->dropped + slips->doubled == 0) continue;
     if (frames_per_cycle == 0 && slips_in_each_cycle(*slips, n)) continue;
     std::vector<double> mended(slips->ticks.begin(), slips->ticks.end());
     Attempt b = attempt(samples_of(heights, mended), 2 * kPi / n);
-    const double scatter = b.scatter.at(0), before = now.attempt.scatter.at(0);
-    if (scatter < 0.5 * before || (scatter < 2 * before && b.off < now.attempt.off)) {
-      now = {std::move(b), std::move(mended)};
-      lock.dropped = slips->dropped;
-      lock.doubled = slips->doubled;
-    }
+    all.push_back({.timed = {std::move(b), std::move(mended)},
+                   .dropped = slips->dropped,
+                   .doubled = slips->doubled,
+                   .slip_cost = cost_of_slips(slips->ticks)});
   }
+  double scatter = std::numeric_limits<double>::infinity();
+  for (const Mended& m : all)
+    scatter = std::min(scatter, std::max(m.timed.attempt.scatter.at(0),
+                                         imaging::kMinScatter * m.timed.attempt.fitted.report.values[1]));
+  Mended& best = *std::min_element(all.begin(), all.end(), [&](const Mended& a, const Mended& b) {
+    return unlikelihood(a, scatter) < unlikelihood(b, scatter);
+  });
+  now = std::move(best.timed);
+  lock.dropped = best.dropped;
+  lock.doubled = best.doubled;
   constexpr double kMaxScatter = 0.05;  // fraction of A
   if (scatters(now.attempt, kMaxScatter))
-    lock.notes.push_back(
-        fmt::format("the heights scatter by {:.2g} of A about a sine: frames may be missing, or the "
-                    "drive changes; calibrate plate takes --frames-per-cycle, which shows missing frames",
-                    now.attempt.scatter.at(0) / now.attempt.fitted.report.values[1]));
+    lock.notes.push_back(fmt::format(
+        "the heights scatter by {:.2g} of A about a sine: frames may be missing, or the drive "
+        "changes{}",
+        now.attempt.scatter.at(0) / now.attempt.fitted.report.values[1],
+        frames_per_cycle > 0 ? ""
+                             : "; calibrate plate takes --frames-per-cycle, which shows missing frames"));
 }
 
 /// Parameters with their errors, the phase for the first frame.

@@ -10,6 +10,7 @@
 #include "core/constants.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
+#include "imaging/phase/lost_frame_costs.hpp"
 #include "imaging/phase/plate_phases.hpp"
 
 namespace twincell::imaging {
@@ -169,32 +170,57 @@ PhaseTable check_lock(const PhaseLock& lock, const LockEvidence& evidence) {
   return table;
 }
 
+namespace {
+
+constexpr int kTerms = 5;  // 1, sin, cos, and of the second harmonic
+
+/// Heights of the plate fitted by the first two harmonics of the phases of the frames.
+struct Harmonics {
+  double sine = 0, cosine = 0;  ///< of the first
+  double left = 0, all = 0;     ///< sums of squares about the fit and about the mean
+};
+
+Harmonics fit_harmonics(const std::vector<double>& cycles, const std::vector<double>& seen) {
+  const auto n = static_cast<Eigen::Index>(seen.size());
+  Eigen::MatrixXd terms(n, kTerms);
+  Eigen::VectorXd heights(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double c = cycles[static_cast<std::size_t>(k)], turn = kTurn * (c - std::floor(c));
+    terms.row(k) << 1, std::sin(turn), std::cos(turn), std::sin(2 * turn), std::cos(2 * turn);
+    heights[k] = seen[static_cast<std::size_t>(k)];
+  }
+  const Eigen::VectorXd fit = terms.completeOrthogonalDecomposition().solve(heights);
+  return {fit[1], fit[2], (heights - terms * fit).squaredNorm(),
+          (heights.array() - heights.mean()).square().sum()};
+}
+
+/// Whether the plate is so much closer to a sine with its own phases that these are not those of the list
+/// with slips that happen to fit. \param slips of the plate's own phases
+bool fits_better(const Harmonics& own, const Harmonics& listed, std::size_t frames, std::ptrdiff_t slips) {
+  const double n = static_cast<double>(frames),
+               floor = n * std::pow(kMinScatter * std::hypot(own.sine, own.cosine), 2);
+  return n / 2 * std::log(std::max(listed.left, floor) / std::max(own.left, floor)) >
+         kSlipCost * static_cast<double>(slips + 1);
+}
+
+}  // namespace
+
 void check_list_by_plate(PhaseTable& table, std::span<const double> plate_px, bool sine) {
-  constexpr int kTerms = 5;                      // 1, sin, cos, and of the second harmonic
   constexpr double kMinExplainedShare = 0.5;     // of the variance of the heights
   constexpr double kMaxPhaseDifference = 0.75;   // frames
   constexpr double kMaxPeriodDifference = 0.01;  // relative
   if (!table.locked()) return;
   const std::optional<PhaseTable> alone = phases_from_plate(plate_px, 0);
   if (!alone) return;
-  std::vector<std::pair<double, double>> seen;  // cycles, height
-  for (std::size_t f = 0; f < plate_px.size(); ++f)
-    if (const auto cycles = table.cycles_at(static_cast<std::int64_t>(f));
-        cycles && alone->cycles_at(static_cast<std::int64_t>(f)) && std::isfinite(plate_px[f]))
-      seen.emplace_back(*cycles, plate_px[f]);
-  if (seen.size() < 3 * kTerms) return;
-  const auto n = static_cast<Eigen::Index>(seen.size());
-  Eigen::MatrixXd terms(n, kTerms);
-  Eigen::VectorXd heights(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const auto& [cycles, height] = seen[static_cast<std::size_t>(k)];
-    const double turn = kTurn * (cycles - std::floor(cycles));
-    terms.row(k) << 1, std::sin(turn), std::cos(turn), std::sin(2 * turn), std::cos(2 * turn);
-    heights[k] = height;
+  std::vector<double> listed, own, heights;  // cycles, px
+  for (std::size_t f = 0; f < plate_px.size(); ++f) {
+    const auto by_list = table.cycles_at(static_cast<std::int64_t>(f)),
+               by_plate = alone->cycles_at(static_cast<std::int64_t>(f));
+    if (!by_list || !by_plate || !std::isfinite(plate_px[f])) continue;
+    listed.push_back(*by_list), own.push_back(*by_plate), heights.push_back(plate_px[f]);
   }
-  const Eigen::VectorXd fit = terms.completeOrthogonalDecomposition().solve(heights);
-  const double all = (heights.array() - heights.mean()).square().sum(),
-               left = (heights - terms * fit).squaredNorm();
+  if (heights.size() < 3 * kTerms) return;
+  const Harmonics fit = fit_harmonics(listed, heights);
   const auto refuse_list = [](const std::string& why) {
     throw ConfigError(
         Where{.file = {}, .key = "--phase-lock"},
@@ -202,7 +228,7 @@ void check_list_by_plate(PhaseTable& table, std::span<const double> plate_px, bo
                     "--trust-stated-drive.",
                     why));
   };
-  if (left > (1 - kMinExplainedShare) * all) {
+  if (fit.left > (1 - kMinExplainedShare) * fit.all) {
     const double of_list = table.period_frames.value_or(table.frames_per_cycle),
                  of_plate = alone->period_frames.value_or(alone->frames_per_cycle);
     if (std::abs(of_list - of_plate) > kMaxPeriodDifference * of_plate)
@@ -212,11 +238,28 @@ void check_list_by_plate(PhaseTable& table, std::span<const double> plate_px, bo
           of_list, of_plate));
     return;
   }
-  const double ahead = std::atan2(fit[2], fit[1]) / kTurn;  // cycles
+  const double ahead = std::atan2(fit.cosine, fit.sine) / kTurn;  // cycles
   if (sine && std::abs(ahead) * table.frames_per_cycle > kMaxPhaseDifference)
     refuse_list(
         fmt::format("the plate in the frames is {:.3g} of a cycle {} than the phases of the list state",
                     std::abs(ahead), ahead > 0 ? "later in its cycle" : "earlier in its cycle"));
+  const Harmonics of_plate = fit_harmonics(own, heights);
+  const double own_ahead = std::atan2(of_plate.cosine, of_plate.sine) / kTurn;
+  double farthest = 0;  // frames
+  for (std::size_t k = 0; k < heights.size(); ++k)
+    farthest = std::max(farthest, alone->frames_per_cycle *
+                                      std::abs(std::remainder(listed[k] + ahead - own[k] - own_ahead, 1.0)));
+  const auto slips = std::count_if(alone->frames.begin(), alone->frames.end(),
+                                   [](const FramePhase& f) { return std::lround(f.interval) != 1; });
+  if (farthest > kMaxPhaseDifference && fits_better(of_plate, fit, heights.size(), slips)) {
+    const std::string lost = slips > 0 ? " (" + slips_in_words(alone->frames) + ")" : "";
+    refuse_list(
+        fmt::format("the phases of the list are up to {:.2g} frames from those of the plate in the frames{}, "
+                    "which follows "
+                    "its own phases to {:.2g} px and those of the list to {:.2g} px",
+                    farthest, lost, std::sqrt(of_plate.left / static_cast<double>(heights.size())),
+                    std::sqrt(fit.left / static_cast<double>(heights.size()))));
+  }
   table.checked_by = "the plate";
 }
 

@@ -16,8 +16,6 @@ namespace twincell::imaging {
 namespace {
 
 constexpr std::size_t kMinHeights = 8;
-constexpr double kMaxFrameCost = 9;   // of one frame's deviation, so that one bad height makes no slip
-constexpr double kMinScatter = 0.02;  // fraction of the amplitude: a shaker does not follow a sine exactly
 
 /// z = c0 + c1 sin(omega t) + c2 cos(omega t).
 struct Sine {

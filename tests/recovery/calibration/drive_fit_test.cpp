@@ -168,6 +168,32 @@ TEST(DriveFit, DroppedAndDoubledFramesAreFoundAndMended) {
 }
 
 // A long gap in a short stack is one place, not a slip in each cycle (before: a period of 18.7 frames).
+// Fits of another number of frames per cycle follow such a plate too, by a slip in each cycle.
+TEST(DriveFit, LostFramesOfARattlingPlateAreFound) {
+  const std::vector<std::vector<int>> lost = {{}, {91}, {37, 38, 91, 120}};
+  std::mt19937_64 generator(12);
+  for (int trial = 0; trial < 10; ++trial)
+    for (const std::vector<int>& gone : lost)
+      for (const int twice : {0, 1})
+        for (const int stated : {0, 20}) {
+          std::vector<double> all =
+              heights_of({.amplitude = 3, .phi = 0.3 * trial, .noise = 0.1, .frames = 160}, generator);
+          std::vector<double> h;
+          for (int f = 0; f < 160; ++f) {
+            if (std::find(gone.begin(), gone.end(), f) != gone.end()) continue;
+            h.push_back(all[static_cast<std::size_t>(f)]);
+            if (twice == 1 && f == 60) h.push_back(h.back() + 0.02);
+          }
+          const DriveFit l = fit_drive(h, {.frames_per_cycle = stated});
+          SCOPED_TRACE(std::to_string(gone.size()) + " lost, " + std::to_string(twice) +
+                       " taken twice, stated " + std::to_string(stated) + ", trial " + std::to_string(trial));
+          EXPECT_EQ(l.frames_per_cycle, 20);
+          EXPECT_EQ(l.dropped, static_cast<std::int64_t>(gone.size()));
+          EXPECT_EQ(l.doubled, twice);
+          EXPECT_NEAR(l.amplitude, 3, 0.1);
+        }
+}
+
 TEST(DriveFit, OneLongGapIsFound) {
   for (const std::size_t missing : {std::size_t{7}, std::size_t{13}}) {
     std::mt19937_64 generator(5);

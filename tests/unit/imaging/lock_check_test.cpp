@@ -234,6 +234,24 @@ TEST(LockCheck, ListIsCheckedAgainstThePlate) {
                               "0.25 of a cycle earlier in its cycle than the phases of the list state");
   expect_refusal<ConfigError>([&] { check_list_by_plate(milliseconds, plate, true); },
                               "repeats itself after 20 frames");
+  // Triggers that are not in step with the frames: the phases of the list are the better ones.
+  std::mt19937_64 random(6);
+  std::vector<double> irregular, of_irregular;
+  for (int f = 0; f < 160; ++f) {
+    irregular.push_back(0.05 * f + std::normal_distribution<double>(0, 0.02)(random));
+    of_irregular.push_back(40 + 12 * std::sin(kTurn * irregular.back()));
+  }
+  PhaseTable triggered{.method = PhaseMethod::triggers};
+  ASSERT_TRUE(set_phases_of_times(triggered, irregular, 20));
+  check_list_by_plate(triggered, of_irregular, true);
+  EXPECT_EQ(triggered.checked_by, "the plate");
+  // A list that spreads the missing frames over the film, as a sine of another period does.
+  const Film lost{.frames = 160, .drop = {37, 38, 91, 120}};
+  const std::vector<double> with_lost = plate_of(lost, 5);
+  PhaseTable smooth = listed(static_cast<int>(with_lost.size()), 1 / 19.41, 0);
+  expect_refusal<ConfigError>([&] { check_list_by_plate(smooth, with_lost, true); },
+                              "frames from those of the plate in the frames (missing: 2 before frame 37",
+                              "--trust-stated-drive");
   // The shaker starts after some cycles.
   for (const int resting : {60, 80, 100}) {
     std::vector<double> started(static_cast<std::size_t>(resting), plate[0]);
