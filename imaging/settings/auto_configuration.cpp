@@ -292,6 +292,12 @@ std::optional<FoundSettings> best_not_round(const SettingsChoice& choice) {
   return best->settings;
 }
 
+/// The part of a frame with most structure, some discs wide even if these are large.
+cv::Mat region_for_large(const cv::Mat& frame, double diameter_px) {
+  constexpr double kDiscsAcross = 6;
+  return busiest(frame, std::max(kExaminedSide, static_cast<int>(kDiscsAcross * diameter_px)));
+}
+
 /// The search for settings in one frame.
 class SettingsSearch {
  public:
@@ -337,13 +343,10 @@ class SettingsSearch {
 
   /// Judges the candidates by their evidence.
   SettingsChoice judge() {
-    constexpr double kDiscsAcross = 6;
     region_ = {grey_, candidates_.empty() ? 0 : 0.5 * candidates_.front().diameter_px};
     // In a crystal that fills the frame the gaps are as similar as the discs, and described as well.
     if (lattice_ > 0) region_.clearly = kClearlyInCrystal;
-    if (patterned_)  // which may be larger than the region
-      region_.picture =
-          busiest(frame_, std::max(kExaminedSide, static_cast<int>(kDiscsAcross * patterned_->diameter_px)));
+    if (patterned_) region_.picture = region_for_large(frame_, patterned_->diameter_px);
     return confirmed(region_, given_, try_settings(region_, given_, candidates_, threads_));
   }
 
@@ -476,6 +479,22 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   choice = search.with_variants_of_winner(choice);
   choice.uncovered_lattice_px = search.uncovered_lattice_px(choice);
   return with_saturation(std::move(choice));
+}
+
+bool confirms(const cv::Mat& picture, const SettingsChoice& choice, const LocatorOptions& given,
+              int threads) {
+  constexpr std::size_t kMost = 2;
+  constexpr double kPart = 0.5;  // of the evidence of the chosen ones
+  const TriedSettings& chosen = choice.tried.front();
+  std::vector<FoundSettings> rivals;  // in the order of choose(): the preferred ones first
+  for (const TriedSettings& t : choice.tried)
+    if (is_round(t) && t.evidence >= kPart * chosen.evidence && (rivals.size() < kMost || t.preferred))
+      rivals.insert(t.preferred ? rivals.begin() : rivals.end(), t.settings);
+  const cv::Mat frame = canonical_picture_orientation(picture).turned(picture);
+  const ExaminedRegion region{region_for_large(frame, chosen.settings.diameter_px),
+                              0.5 * chosen.settings.diameter_px};
+  const SettingsChoice here = choose(try_settings(region, given, rivals, threads));
+  return !here.tried.empty() && same_discs(here.tried.front(), chosen);
 }
 
 std::optional<FoundSettings> find_settings(const cv::Mat& picture, const LocatorOptions& given) {

@@ -35,6 +35,13 @@ std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOp
 /// \param threads which do not change the result
 SettingsChoice choose_settings(const cv::Mat& grey, const LocatorOptions& given, int threads = 1);
 
+/// Whether another frame confirms a choice: of the chosen settings, the next best and the preferred ones, the
+/// chosen ones are chosen on that frame too. Takes a fraction of the time of choose_settings.
+///
+/// \param threads which do not change the result
+bool confirms(const cv::Mat& frame, const SettingsChoice& choice, const LocatorOptions& given,
+              int threads = 1);
+
 /// The settings chosen by choose_settings: the diameter, the polarity and, with the default refiner, the
 /// disc model. Empty if no round object stands out.
 std::optional<FoundSettings> find_settings(const cv::Mat& grey, const LocatorOptions& given);

@@ -85,6 +85,66 @@ double distance_of_parts(const std::vector<Detection>& beads, const LocatorOptio
   return settled.diameter_px < kSmall_px || half < kTouching * closest ? closest : 0;
 }
 
+/// A frame and the settings chosen on it.
+struct ChoiceOnFrame {
+  std::size_t number = 0;
+  SettingsChoice choice;
+};
+
+/// The last two of the frames 1, 2, 4, 8 and 16 that lie behind a frame and are not blank. Frames further on
+/// would have to be kept in memory.
+std::vector<std::size_t> later_frames(FramesAhead& frames, std::size_t behind) {
+  constexpr std::size_t kLast = 16, kWitnesses = 2;
+  std::vector<std::size_t> later;
+  for (std::size_t k = 1; k <= kLast; k *= 2) {
+    const cv::Mat* frame = frames.look(k);
+    if (frame == nullptr) break;
+    if (k <= behind || is_blank(*frame)) continue;
+    later.push_back(k);
+    if (later.size() > kWitnesses) later.erase(later.begin());
+  }
+  return later;
+}
+
+/// The choice on one frame, or that on a later one if two later frames agree against it: the frame may show
+/// the beads behind a hand, out of focus or in a flash. The search is repeated only if neither of the later
+/// frames confirms the choice, because it takes as long as locating many frames.
+ChoiceOnFrame of_most_frames(FramesAhead& frames, ChoiceOnFrame first, const LocatorOptions& given,
+                             int threads) {
+  const std::vector<std::size_t> later = later_frames(frames, first.number);
+  if (later.size() < 2) return first;
+  for (const std::size_t k : later)
+    if (confirms(*frames.look(k), first.choice, given, threads)) return first;
+  std::vector<SettingsChoice> choices;
+  for (const std::size_t k : later) {
+    choices.push_back(choose_settings(*frames.look(k), given, threads));
+    const std::vector<TriedSettings>& tried = choices.back().tried;
+    if (tried.empty() || same_discs(tried.front(), first.choice.tried.front())) return first;
+  }
+  if (!same_discs(choices[0].tried.front(), choices[1].tried.front())) return first;
+  return {later[0], std::move(choices[0])};
+}
+
+/// The given options with the settings chosen on a frame.
+LocatorOptions settled_on(const cv::Mat& frame, const SettingsChoice& choice, const LocatorOptions& given) {
+  LocatorOptions settled = completed(choice.tried.front().settings, given);
+  if (model_of(settled.refine) == DiscModel::circle)
+    settled.preprocess.contrast = find_contrast(frame, settled);
+  return settled;
+}
+
+/// The settings, adapted to the beads that they locate in the frame on which they were chosen.
+LocatorConfiguration adapted(const cv::Mat& frame, ChoiceOnFrame chosen, const LocatorOptions& given) {
+  LocatorOptions settled = settled_on(frame, chosen.choice, given);
+  if (given.diameter_px <= 0 && model_of(settled.refine) == DiscModel::shared_profile) {
+    const std::vector<Detection> beads = locate(frame, settled).beads;
+    settled = at_rim(frame, std::move(settled), beads);
+  }
+  settled = with_pale_discs(frame, settled);
+  chosen.choice.apart_px = distance_of_parts(locate(frame, settled).beads, settled);
+  return {settled, static_cast<std::int64_t>(chosen.number), std::move(chosen.choice)};
+}
+
 /// Examines frames 0, 1, 2, 4, ... until one shows a bead with the settings found in it. The frames are few,
 /// because the search in one frame takes as long as locating many frames.
 LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given, int threads) {
@@ -101,17 +161,11 @@ LocatorConfiguration search(FramesAhead& frames, const LocatorOptions& given, in
         refused = std::move(choice);
       continue;
     }
-    LocatorOptions settled = completed(choice.tried.front().settings, given);
-    if (model_of(settled.refine) == DiscModel::circle)
-      settled.preprocess.contrast = find_contrast(*frame, settled);
+    const LocatorOptions settled = settled_on(*frame, choice, given);
     if (!first) first = settled;
-    const std::vector<Detection> beads = locate(*frame, settled).beads;
-    if (beads.empty()) continue;
-    if (given.diameter_px <= 0 && model_of(settled.refine) == DiscModel::shared_profile)
-      settled = at_rim(*frame, std::move(settled), beads);
-    settled = with_pale_discs(*frame, settled);
-    choice.apart_px = distance_of_parts(locate(*frame, settled).beads, settled);
-    return {settled, static_cast<std::int64_t>(k), std::move(choice)};
+    if (locate(*frame, settled).beads.empty()) continue;
+    ChoiceOnFrame chosen = of_most_frames(frames, {k, std::move(choice)}, given, threads);
+    return adapted(*frames.look(chosen.number), std::move(chosen), given);
   }
   if (!first && given.diameter_px <= 0) {
     const TriedSettings* other = not_round(refused);

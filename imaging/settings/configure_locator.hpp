@@ -33,7 +33,8 @@ class NoDiscs : public InputError {
 };
 
 /// Finds the settings that `given` leaves open (diameter, polarity and, with the default refiner, the disc
-/// model) from the first of frames 0, 1, 2, 4, ... 32 that shows beads (auto_configuration.hpp). If both
+/// model) from the first of frames 0, 1, 2, 4, ... 32 that shows beads (auto_configuration.hpp), or from a
+/// later one: if two later frames, at most 16 frames on, agree on other discs, theirs are taken. If both
 /// diameter and polarity are given, only the contrast is found, from the first frame.
 /// \throws NoDiscs if no frame shows discs
 /// \param threads which do not change the result

@@ -28,6 +28,7 @@ struct TriedSettings {
   double rim_variation = 0;
   double rim_shift = 0;    ///< of these discs (rim_shift.hpp), in radii; not round above kMaxRimShift
   std::string not_chosen;  ///< why others with less evidence were chosen, in words; empty: they were not
+  bool preferred = false;  ///< the chosen ones needed clearly more evidence than these, and had it
 };
 
 /// All settings that were tried, and the best of them.

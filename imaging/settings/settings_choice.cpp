@@ -106,8 +106,9 @@ TriedSettings try_one(const ExaminedRegion& region, const LocatorOptions& given,
   return tried;
 }
 
-constexpr double kMinShare = 5;  // nats a disc: odds of 150 that it is one
-constexpr double kPart = 0.5;    // least evidence, in that of what is not round
+constexpr double kMinShare = 5;     // nats a disc: odds of 150 that it is one
+constexpr double kPart = 0.5;       // least evidence, in that of what is not round
+constexpr double kOtherSize = 0.1;  // relative difference of diameters
 
 bool explains(const TriedSettings& tried) {
   return tried.evidence > 0 && tried.evidence >= kMinShare * static_cast<double>(tried.beads);
@@ -212,8 +213,10 @@ SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
     }
     if (!reason.empty()) chosen = first;
   }
-  for (auto t = tried.begin(); t != end; ++t)
+  for (auto t = tried.begin(); t != end; ++t) {
     if (t->evidence > chosen->evidence) t->not_chosen = reason;
+    t->preferred = t == first && t != chosen;
+  }
   SettingsChoice choice{{*chosen}, {}};
   tried.erase(chosen);
   std::stable_sort(tried.begin(), tried.end(), [&](const auto& a, const auto& b) { return less(b, a); });
@@ -237,8 +240,14 @@ SettingsChoice confirmed(const ExaminedRegion& region, const LocatorOptions& giv
   return choice;
 }
 
+bool same_discs(const TriedSettings& a, const TriedSettings& b) {
+  return a.settings.bright == b.settings.bright && a.settings.method == b.settings.method &&
+         (same_sizes(a.settings, b.settings, kOtherSize) ||
+          (is_profile(a) && std::abs(a.rim_px / b.rim_px - 1) < kOtherSize));
+}
+
 std::size_t runner_up(const SettingsChoice& choice) {
-  constexpr double kOtherSize = 0.1, kOtherNumber = 0.05;
+  constexpr double kOtherNumber = 0.05;
   for (std::size_t k = 1; k < choice.tried.size(); ++k) {
     const TriedSettings &first = choice.tried.front(), &other = choice.tried[k];
     if (!is_round(other)) continue;

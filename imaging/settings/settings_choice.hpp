@@ -62,6 +62,10 @@ SettingsChoice choose(std::vector<TriedSettings> tried, double clearly = kMinAdv
 SettingsChoice confirmed(const ExaminedRegion& region, const LocatorOptions& given,
                          std::vector<TriedSettings> tried);
 
+/// Whether two settings describe the same kind of discs: polarity, model and diameters, to a tenth. With a
+/// profile, discs of the same rim are the same.
+bool same_discs(const TriedSettings& a, const TriedSettings& b);
+
 /// Whether the choice is narrow: the runner-up has at least 0.9 of the evidence of the chosen settings. The
 /// runner-up are the best settings that describe other discs, which differ by one of
 /// - the diameter, by more than a tenth, unless as many discs have a common profile, which has no rim;

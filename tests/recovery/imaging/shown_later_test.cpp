@@ -1,4 +1,5 @@
-// Stacks whose first frame shows no beads: settings come from a later frame, or none are reported.
+// Stacks whose first frame shows no beads, or something else: settings come from a later frame, or none are
+// reported.
 
 #include <gtest/gtest.h>
 
@@ -86,6 +87,30 @@ TEST(ShownLater, OneLargeDiscIsFoundUnasked) {
     EXPECT_NEAR(seen.beads[0][0].x, 150.3, 0.02);
     EXPECT_NEAR(seen.beads[0][0].y, 160.6, 0.02);
     EXPECT_NEAR(2 * seen.beads[0][0].radius, diameter, 0.1);
+  }
+}
+
+/// Discs of one radius on a square lattice.
+Picture lattice_of(double radius, double spacing) {
+  std::vector<Disc> discs;
+  for (double y = spacing / 2; y < 200; y += spacing)
+    for (double x = spacing / 2; x < 240; x += spacing) discs.push_back(disc(x + 0.3, y + 0.2, radius));
+  return frame_with(std::move(discs));
+}
+
+// A scale held before the cell in one frame, the first or a later one.
+TEST(ShownLater, OneStrangeFrameDoesNotDecide) {
+  const Picture beads = lattice_of(7.5, 22), scale = lattice_of(15, 48);
+  for (const std::size_t strange : {0, 2, 4}) {
+    std::vector<Picture> pictures(5, beads);
+    pictures[strange] = scale;
+    const Seen seen = locate_all(pictures);
+    EXPECT_NEAR(seen.configured.locator.diameter_px, 15, 0.1) << strange;
+    EXPECT_EQ(seen.configured.frame, strange == 0 ? 2 : 0);
+    for (std::size_t f = 0; f < 5; ++f) {
+      if (f == strange) continue;
+      EXPECT_EQ(seen.beads[f].size(), beads.discs.size()) << strange << ", " << f;
+    }
   }
 }
 
