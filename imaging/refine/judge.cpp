@@ -89,35 +89,101 @@ void flag_overlaps(std::vector<Detection>& beads) {
   }
 }
 
-/// The limit below which the interiors, times `sign`, are those of a population of their own: at most
-/// `limit`. \returns nothing if there is none
-std::optional<double> limit_of_population(const std::vector<double>& interior, double sign, double limit) {
+/// Beads whose interiors, times `sign`, are below a limit: a population of their own.
+struct Population {
+  double sign = 1, limit = 0;
+  std::vector<std::size_t> members;
+};
+
+/// The beads that are a population of their own, with a limit of at most `limit`; nothing if there are none.
+std::optional<Population> own_population(const std::vector<Detection>& beads, double sign, double limit) {
   std::vector<double> sorted;
-  sorted.reserve(interior.size());
-  for (const double v : interior) sorted.push_back(sign * v);
+  sorted.reserve(beads.size());
+  for (const Detection& b : beads) sorted.push_back(sign * b.interior);
   std::sort(sorted.begin(), sorted.end());
   // The limit lies below the other beads, and in or above the gap.
   const std::size_t split = separate_population(sorted, limit);
   if (split == 0) return std::nullopt;
-  return std::min(limit, sorted[split]);
+  Population own{sign, std::min(limit, sorted[split]), {}};
+  for (std::size_t k = 0; k < beads.size(); ++k)
+    if (sign * beads[k].interior < own.limit) own.members.push_back(k);
+  return own;
 }
 
-void flag_tracers(std::vector<Detection>& beads, double below) {
+/// Whether the members of a population are alike: they scatter by less than half of the gap to the others.
+bool are_alike(const std::vector<Detection>& beads, const Population& own) {
+  constexpr double kGaps = 0.5;
+  std::vector<double> interior;
+  for (const std::size_t k : own.members) interior.push_back(own.sign * beads[k].interior);
+  const double most = *std::max_element(interior.begin(), interior.end()), middle = upper_median(interior);
+  return robust_spread(std::move(interior), middle) < kGaps * (own.limit - most);
+}
+
+/// Whether the members of a population are scattered among the others. Beads in a shadow, or along a wall,
+/// are together: the nearest neighbours of more of them are members than of beads chosen at random, by at
+/// least four standard deviations.
+bool are_scattered(const std::vector<Detection>& beads, const Population& own) {
+  constexpr std::size_t kMost = 200;  // members whose neighbours are searched
+  constexpr double kDeviations = 4;
+  std::vector<bool> is_member(beads.size(), false);
+  for (const std::size_t k : own.members) is_member[k] = true;
+  const std::size_t stride = 1 + own.members.size() / kMost;
+  double asked = 0, together = 0;
+  for (std::size_t m = 0; m < own.members.size(); m += stride) {
+    const Detection& b = beads[own.members[m]];
+    double least = HUGE_VAL;
+    std::size_t nearest = 0;
+    for (std::size_t k = 0; k < beads.size(); ++k) {
+      const double apart = std::hypot(beads[k].x - b.x, beads[k].y - b.y);
+      if (k != own.members[m] && apart < least) least = apart, nearest = k;
+    }
+    ++asked, together += is_member[nearest] ? 1 : 0;
+  }
+  const double share = static_cast<double>(own.members.size()) / static_cast<double>(beads.size());
+  return together <= asked * share + kDeviations * std::sqrt(asked * share * (1 - share));
+}
+
+/// A population that differs too little from the others for a few beads of it to be believed: at least five,
+/// but not more than a quarter of the beads, that are alike and scattered among the others.
+std::optional<Population> close_population(const std::vector<Detection>& beads, double sign, double limit) {
+  constexpr std::size_t kMinMembers = 5, kMinOthers = 3;  // the latter for each member
+  std::optional<Population> own = own_population(beads, sign, limit);
+  if (!own || own->members.size() < kMinMembers || (1 + kMinOthers) * own->members.size() > beads.size() ||
+      !are_alike(beads, *own) || !are_scattered(beads, *own))
+    return std::nullopt;
+  return own;
+}
+
+/// The tracers among the beads; nothing if there are none.
+std::optional<Population> find_tracers(const std::vector<Detection>& beads, double typical,
+                                       const JudgeOptions& options) {
+  const double below = options.tracer_below, close = options.close_tracer_below;
+  if (below <= 0) return std::nullopt;
+  std::optional<Population> found = own_population(beads, 1, below * typical);
+  // Among opaque beads tracers are paler. Among beads that let light through they may be darker instead.
+  if (!found) found = own_population(beads, -1, -typical / below);
+  // Small beads let more light through than large ones.
+  if (!options.other_radii_px.empty()) return found;
+  std::optional<Population> near = close_population(beads, 1, close * typical);
+  if (!near) near = close_population(beads, -1, -typical / close);
+  // A few dirty beads are no reason to miss the tracers.
+  constexpr std::size_t kMany = 3;
+  return near && (!found || near->members.size() > kMany * found->members.size()) ? near : found;
+}
+
+void flag_tracers(std::vector<Detection>& beads, const JudgeOptions& options) {
   if (beads.empty()) return;
   std::vector<double> interior;
   interior.reserve(beads.size());
   for (const Detection& b : beads) interior.push_back(b.interior);
   const double typical = upper_median(interior);
-  double sign = 1, limit = below * typical;
-  std::optional<double> found = limit_of_population(interior, sign, limit);
-  // Among opaque beads tracers are paler. Among beads that let light through they may be darker instead.
-  if (!found && below > 0)
-    if (const auto darker = limit_of_population(interior, -1, -typical / below)) sign = -1, found = darker;
-  if (found) limit = *found;
+  const std::optional<Population> tracers = find_tracers(beads, typical, options);
+  const double sign = tracers ? tracers->sign : 1,
+               limit = tracers ? tracers->limit : options.tracer_below * typical;
   constexpr double kMinScatter = 0.005;
   const double scatter = std::max(kMinScatter, robust_spread(std::move(interior), typical));
   for (Detection& b : beads) {
-    b.tracer = found && sign * b.interior < limit;
+    b.tracer = tracers && sign * b.interior < limit;
     b.tracer_margin = std::abs(sign * b.interior - limit) / scatter;
   }
 }
@@ -147,7 +213,7 @@ Judged judge(std::vector<Detection> candidates, double radius_px, int width, int
     (b.verdict == Verdict::bead ? judged.beads : judged.dropped).push_back(b);
   }
   if (options.max_overlap > JudgeOptions{}.max_overlap) flag_overlaps(judged.beads);
-  flag_tracers(judged.beads, options.tracer_below);
+  flag_tracers(judged.beads, options);
   return judged;
 }
 

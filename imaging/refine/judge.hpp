@@ -19,6 +19,8 @@ struct JudgeOptions {
   bool pale = false;                   ///< a pale disc (RefineOptions) is as pale inside as at its rim
   double max_overlap = 0.25;  ///< largest overlap of two discs, in radii; beyond it the worse is dropped
   double tracer_below = 0.8;  ///< a tracer's interior is below this fraction of the median; 0: no tracers
+  /// The same if five tracers or more, which are alike, are scattered among three times as many other beads.
+  double close_tracer_below = 0.95;
   /// Discs that are not beads are dropped (outlier_discs.hpp). For one size that the picture gave: beads of a
   /// stated size are beads, and beads of many sizes are too unlike each other.
   bool drop_outliers = false;
@@ -34,7 +36,8 @@ struct Judged {
 /// with a better one) and centres outside the frame. Flags discs that are cut by the frame, and tracers:
 /// beads with interiors below tracer_below of the median, or, if there are none, above median/tracer_below,
 /// if a gap separates them from the rest that one population with a log-concave distribution shows in at most
-/// one of a thousand frames. Pure.
+/// one of a thousand frames. If all beads have one size, the limit is close_tracer_below for tracers that are
+/// alike and scattered among the others. Pure.
 /// \param width, height of the frame, px
 Judged judge(std::vector<Detection> candidates, double radius_px, int width, int height,
              const JudgeOptions& options);

@@ -91,6 +91,36 @@ TEST(Judge, TwoPopulationsAreSeparated) {
   }
 }
 
+/// Numbers of tracers among 200 beads on a lattice. `is_pale` tells which of them absorb `pale`.
+template <class IsPale>
+std::size_t tracers_on_lattice(double pale, double scatter, IsPale is_pale) {
+  constexpr int kRows = 10, kColumns = 20, kSpacing = 20;
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> noise(0, scatter);
+  std::vector<Detection> beads;
+  for (int row = 0; row < kRows; ++row)
+    for (int column = 0; column < kColumns; ++column) {
+      beads.push_back(good(kSpacing * (column + 1), kSpacing * (row + 1)));
+      beads.back().interior = (is_pale(row, column) ? pale : 0.97) + noise(random);
+    }
+  const Judged j = judge(beads, 7.5, kSpacing * (kColumns + 1), kSpacing * (kRows + 1), {});
+  return static_cast<std::size_t>(
+      std::count_if(j.beads.begin(), j.beads.end(), [](const Detection& b) { return b.tracer; }));
+}
+
+// Tracers that let a tenth of the light through are a population of their own if they are many and alike.
+// Beads along a wall, or in the shadow at a corner, are not tracers.
+TEST(Judge, CloseTracersAreScattered) {
+  const auto every = [](int n) { return [n](int row, int column) { return (20 * row + column) % n == 3; }; };
+  EXPECT_EQ(tracers_on_lattice(0.83, 0.005, every(11)), 18U);
+  EXPECT_EQ(tracers_on_lattice(0.88, 0.005, every(11)), 18U);
+  EXPECT_EQ(tracers_on_lattice(0.93, 0.005, every(11)), 0U);
+  EXPECT_EQ(tracers_on_lattice(0.88, 0.03, every(11)), 0U);
+  EXPECT_EQ(tracers_on_lattice(0.88, 0.005, every(51)), 0U);
+  EXPECT_EQ(tracers_on_lattice(0.88, 0.005, [](int, int column) { return column == 0; }), 0U);
+  EXPECT_EQ(tracers_on_lattice(0.88, 0.005, [](int row, int column) { return row < 5 && column < 5; }), 0U);
+}
+
 TEST(Judge, EachBeadHasOneVerdict) {
   EXPECT_EQ(judged(good(50, 50)), Verdict::bead);
   Detection b = good(50, 50);
