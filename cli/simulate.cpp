@@ -218,8 +218,7 @@ bool is_finished(const sim::Scene& scene, const SimulateOptions& options) {
       !std::filesystem::exists(options.output))
     return false;
   const std::string stored = H5mdReader(options.output).info().provenance_json;
-  const auto provenance = nlohmann::json::parse(stored, nullptr, false);
-  if (!provenance.is_object() || provenance.value("config", nlohmann::json()) != scene.resolved)
+  if (!sim::is_of_scene(stored, scene))
     throw ConfigError(
         {options.output, 0, 0, "--resume"},
         "the output belongs to another scene, and there is no checkpoint next to it to resume from.");

@@ -314,6 +314,11 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
   return c;
 }
 
+bool is_of_scene(const std::string& provenance_json, const Scene& scene) {
+  const auto provenance = nlohmann::json::parse(provenance_json, nullptr, false);
+  return provenance.is_object() && provenance.value("config", nlohmann::json()) == scene.resolved;
+}
+
 bool has_other_start(const Scene& scene, const std::string& provenance_json) {
   const auto provenance = nlohmann::json::parse(provenance_json, nullptr, false);
   std::error_code none;

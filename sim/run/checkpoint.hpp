@@ -38,6 +38,9 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
 /// \throws InputError if it is missing, damaged in any number, or of another version
 Checkpoint read_checkpoint(const std::filesystem::path& path);
 
+/// Whether the provenance of a trajectory states this scene.
+bool is_of_scene(const std::string& provenance_json, const Scene& scene);
+
 /// Whether the file of start.from is none of the inputs in the provenance of a run. False if it was removed
 /// since, because the run does not need it any more; the record of a drive has a key of its own.
 bool has_other_start(const Scene& scene, const std::string& provenance_json);

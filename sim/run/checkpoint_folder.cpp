@@ -18,8 +18,26 @@ namespace twincell::sim {
 namespace fs = std::filesystem;
 
 namespace {
+
 constexpr const char* kState = "state.h5";
+
+/// Whether a name is that of an unfinished file of this program (temporary_files.hpp).
+bool is_unfinished(const std::string& name) {
+  static const std::regex pattern(R"(\.twincell-[0-9a-f]{16}(-[0-9a-v]{12}\.part\.h5|\.lock))");
+  return std::regex_match(name, pattern);
 }
+
+/// Whether a file contains frames of this scene.
+bool has_frames_of(const fs::path& file, const Scene& scene) {
+  if (!fs::is_regular_file(fs::symlink_status(file))) return false;
+  try {
+    return is_of_scene(H5mdReader(file).info().provenance_json, scene);
+  } catch (const Error&) {  // damaged, or of another program
+    return false;
+  }
+}
+
+}  // namespace
 
 fs::path CheckpointFolder::of(const fs::path& output) {
   fs::path folder = output;
@@ -39,6 +57,9 @@ CheckpointFolder::CheckpointFolder(fs::path folder, const Scene& scene,
     : folder_(std::move(folder)) {
   const Where where{folder_.string(), 0, 0, ""};
   std::error_code ec;
+  if (fs::is_symlink(fs::symlink_status(folder_, ec)))
+    throw ConfigError(where,
+                      "the checkpoint folder is a link, through which files elsewhere would be removed.");
   fs::create_directory(folder_, ec);
   if (ec || !fs::is_directory(folder_, ec) || ::access(folder_.c_str(), R_OK | W_OK | X_OK) != 0)
     throw ConfigError(where, "the checkpoint folder cannot be created or written to.");
@@ -59,6 +80,7 @@ CheckpointFolder::CheckpointFolder(fs::path folder, const Scene& scene,
     checkpoint_.scene = scene.resolved;
     checkpoint_.provenance = make_provenance();
   }
+  require_own_files(scene);
   remove_strays();
 }
 
@@ -69,17 +91,34 @@ CheckpointFolder::~CheckpointFolder() {
   if (lock_ >= 0) ::close(lock_);
 }
 
+std::vector<fs::path> CheckpointFolder::later_segments() const {
+  std::vector<fs::path> all;
+  for (std::size_t k = checkpoint_.segments.size(); fs::exists(fs::symlink_status(segment(k))); ++k)
+    all.push_back(segment(k));
+  return all;
+}
+
+void CheckpointFolder::require_own_files(const Scene& scene) const {
+  const auto refuse = [&](const fs::path& file, const std::string& complaint) {
+    throw ConfigError({folder_.string(), 0, 0, ""},
+                      fmt::format("'{}' in the checkpoint folder {}; move it, or name another output.",
+                                  file.filename().string(), complaint));
+  };
+  const std::vector<fs::path> later = later_segments();
+  for (const fs::path& file : later)
+    if (!has_frames_of(file, scene)) refuse(file, "does not contain frames of this run");
+  if (found_) return;  // other files stay as they are
+  for (const auto& entry : fs::directory_iterator(folder_))
+    if (std::find(later.begin(), later.end(), entry.path()) == later.end() &&
+        !is_unfinished(entry.path().filename().string()))
+      refuse(entry.path(), "was not written by this program");
+}
+
 void CheckpointFolder::remove_strays() const {
-  // The segments that follow those of the state without a gap, as a killed run leaves them, and its
-  // unfinished files (temporary_files.hpp). Others may be the user's.
-  static const std::regex unfinished(R"(state\.h5|\.twincell-[0-9a-f]{16}(-[0-9a-v]{12}\.part\.h5|\.lock))");
-  std::vector<fs::path> strays;
-  for (std::size_t k = checkpoint_.segments.size(); fs::exists(segment(k)); ++k) strays.push_back(segment(k));
-  for (const auto& entry : fs::directory_iterator(folder_)) {
-    const fs::path& path = entry.path();
-    const bool counted = found_ && path.filename() == kState;
-    if (!counted && std::regex_match(path.filename().string(), unfinished)) strays.push_back(path);
-  }
+  // As a killed run leaves them. Segments after a gap may be the user's.
+  std::vector<fs::path> strays = later_segments();
+  for (const auto& entry : fs::directory_iterator(folder_))
+    if (is_unfinished(entry.path().filename().string())) strays.push_back(entry.path());
   // The last segment first: what a killed program leaves has no gap.
   std::sort(strays.begin(), strays.end());
   for (auto stray = strays.rbegin(); stray != strays.rend(); ++stray) fs::remove(*stray);

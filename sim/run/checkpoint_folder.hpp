@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/error.hpp"
 #include "sim/run/checkpoint.hpp"
@@ -34,8 +35,8 @@ class CheckpointFolder : public TrajectorySink {
 
   /// Creates the folder, or opens it and reads its contents.
   /// \param make_provenance provenance of a new run; a resumed run keeps its original provenance
-  /// \throws ConfigError if the folder cannot be created, belongs to another scene or program version, or is
-  /// in use by another process; InputError if it is damaged
+  /// \throws ConfigError if the folder cannot be created, is a link, contains files of others, belongs to
+  /// another scene or program version, or is in use by another process; InputError if it is damaged
   CheckpointFolder(std::filesystem::path folder, const Scene& scene,
                    const std::function<std::string()>& make_provenance);
   ~CheckpointFolder() override;
@@ -66,6 +67,11 @@ class CheckpointFolder : public TrajectorySink {
   void finish_segment();
   template <class Work>
   void saving(Work work) const;
+  /// The segments that follow those of the state without a gap.
+  [[nodiscard]] std::vector<std::filesystem::path> later_segments() const;
+  /// \throws ConfigError naming a file that a run of this scene has not left, if it would be removed or if
+  /// there is no state
+  void require_own_files(const Scene& scene) const;
   void remove_strays() const;
 
   std::filesystem::path folder_;

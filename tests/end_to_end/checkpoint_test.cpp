@@ -2,6 +2,7 @@
 
 #include "sim/run/checkpoint.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <sys/resource.h>
@@ -238,6 +239,57 @@ TEST_F(Checkpoints, AUsersFileNamedLikeASegmentStays) {
   const Ran rest = run_program(words({"--resume"}));
   EXPECT_EQ(rest.code, kDone) << rest.err;
   EXPECT_EQ(names_in(place_), std::vector<std::string>{"segment-0099.h5"});
+}
+
+// A run removes its checkpoints, so it must not take a folder of others for its own.
+TEST_F(Checkpoints, FilesOfOthersAreNeitherReplacedNorRemoved) {
+  const fs::path data = folder_ / "data";
+  const auto expect_kept = [&](const fs::path& file, const std::vector<std::string>& mentioned) {
+    const auto before = names_in(file.parent_path());
+    for (const auto& more : {std::vector<std::string>{"--checkpoint-every", "0"}, {"--resume"}}) {
+      expect_refusal(more, kUsage, mentioned);
+      EXPECT_EQ(names_in(file.parent_path()), before);
+      EXPECT_FALSE(fs::exists(output_));
+    }
+  };
+  fs::create_directory(data);
+  std::ofstream(data / "segment-0001.h5") << "mine";
+  fs::create_directory_symlink(data, place_);
+  expect_kept(data / "segment-0001.h5", {"o.h5.checkpoint", "is a link"});
+  EXPECT_TRUE(fs::is_symlink(place_));
+  fs::remove(place_);
+  fs::rename(data, place_);
+  expect_kept(place_ / "segment-0001.h5", {"'segment-0001.h5'", "does not contain frames of this run"});
+  fs::rename(place_ / "segment-0001.h5", place_ / "notes.txt");
+  expect_kept(place_ / "notes.txt", {"'notes.txt'", "was not written by this program"});
+  // A trajectory of another run.
+  fs::remove(place_ / "notes.txt");
+  const std::string other = place_ / "segment-0001.h5";
+  ASSERT_EQ(run_program({"simulate", scene_, "-o", other, "-q", "--set", "drive.gamma=1.5"}).code, kDone);
+  expect_kept(other, {"'segment-0001.h5'", "does not contain frames of this run"});
+}
+
+TEST_F(Checkpoints, AFileOfOthersIsNotTakenForTheNextSegment) {
+  ASSERT_EQ(stopped_in_the_middle(SIGINT).code, 130);
+  const std::size_t segments = sim::read_checkpoint(place_ / "state.h5").segments.size();
+  const fs::path mine = place_ / fmt::format("segment-{:04}.h5", segments + 1);
+  std::ofstream(mine) << "mine";
+  expect_refusal({"--resume"}, kUsage, {mine.filename(), "does not contain frames of this run"});
+  EXPECT_TRUE(fs::exists(mine) && fs::exists(place_ / "state.h5"));
+}
+
+// A run that was killed between its first segment and its first state leaves nothing but the segment.
+TEST_F(Checkpoints, SegmentsWithoutAStateAreThoseOfAKilledRun) {
+  const auto whole = uninterrupted();
+  for (const auto& more : {std::vector<std::string>{"--checkpoint-every", "0"}, {"--resume"}}) {
+    ASSERT_EQ(stopped_in_the_middle(SIGINT).code, 130);
+    fs::remove(place_ / "state.h5");
+    const Ran ran = run_program(words(more));
+    EXPECT_EQ(ran.code, kDone) << ran.err;
+    EXPECT_EQ(datasets_of(output_), whole);
+    EXPECT_FALSE(fs::exists(place_));
+    fs::remove(output_);
+  }
 }
 
 TEST_F(Checkpoints, AnotherProgramsRunIsNotResumed) {
