@@ -136,6 +136,8 @@ class Draft {
       measured("camera.pixels_per_sigma", *scale_, how_scale_);
     else
       open("camera.pixels_per_sigma", "bead diameter in px", "");
+    if (scale_ && scale_->error > 0 && std::isfinite(scale_->error))
+      stated("camera.scale_error_px", error_text(scale_->error), "standard error of pixels_per_sigma");
     if (scale_ && disc_width_)
       measured(
           "camera.disc_width_px", *disc_width_,

@@ -1,6 +1,7 @@
 #include "twin/comparison.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -149,7 +150,7 @@ void require_size(const fs::path& stack, const analysis::PictureFrame& camera,
                   stack.string(), width, height, experiment, camera.width, camera.height));
 }
 
-/// Adds the camera's scale and the frames at the snapshots of an experiment.
+/// Adds the camera's scale with its error and the frames at the snapshots of an experiment.
 /// \param is_named whether the user named the stack
 void show_frames(const TrajectoryInfo& info, const fs::path& stack, bool is_named, analysis::Run& run,
                  std::vector<std::string>& notes) {
@@ -165,6 +166,8 @@ void show_frames(const TrajectoryInfo& info, const fs::path& stack, bool is_name
                        .origin_y = origin[1].number_in(-kLargest_px, kLargest_px),
                        .width = static_cast<int>(camera->at("width_px").integer(1, 1 << 30)),
                        .height = static_cast<int>(camera->at("height_px").integer(1, 1 << 30))};
+    if (const auto error = camera->find("scale_error_px"))
+      run.scale_error = error->number_in(0, kLargest_px) / run.show.camera->pixels_per_sigma;
     if (const auto turned = camera->find("rotation_deg")) rotation_deg = turned->number_in(-180, 180);
     if (const auto bent = camera->find("distortion")) distortion = bent->number_in(-1, 1);
   } catch (const InputError& e) {
@@ -372,6 +375,19 @@ void note_other_frequencies(const std::vector<analysis::Run>& runs,
   }
 }
 
+/// Notes experiments whose scale has no stated error.
+void note_exact_scales(const Sides& sides, const std::vector<analysis::Run>& runs,
+                       std::vector<std::string>& notes) {
+  std::vector<std::string> names;
+  for (std::size_t e = 0; e < sides.n_experiments; ++e)
+    if (sides.trajectories[e]->info().scale.pixels_per_sigma && !runs[e].scale_error)
+      names.push_back(runs[e].name);
+  if (!names.empty())
+    notes.push_back(fmt::format(
+        "no error of the scale is stated for {} (camera.scale_error_px): the errors of lengths assume none.",
+        fmt::join(names, ", ")));
+}
+
 /// Drops pictures until those of all runs fit into the page, each run with the same share.
 void limit_pictures(std::vector<analysis::Run>& runs) {
   std::size_t with_pictures = 0;
@@ -397,6 +413,7 @@ analysis::Comparison compare_runs(const ComparingOptions& options, const Progres
   c.boundaries = analysis::find_boundaries(c.runs);
   for (std::string& note : add_sweeps(options.sweeps, c)) notes.push_back(std::move(note));
   c.differences = analysis::find_differences(c.runs, c.matches, c.checks);
+  if (!c.differences.empty()) note_exact_scales(sides, c.runs, notes);
   return c;
 }
 

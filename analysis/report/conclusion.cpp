@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "analysis/runs/match_verdict.hpp"
 #include "analysis/runs/onset_agreement.hpp"
+#include "analysis/runs/phase_evidence.hpp"
 #include "core/plural.hpp"
 
 namespace twincell::analysis {
@@ -64,6 +66,20 @@ std::string real_differences(const Comparison& c) {
   return text;
 }
 
+/// Why the phases of a match are undecided: "in the simulation s_c = 1.18 [0.79, 1.84], threshold 1".
+std::string doubts_of(const std::vector<Run>& runs, const Match& match) {
+  std::vector<std::string> sides;
+  for (const auto* members : {&match.experiments, &match.simulations}) {
+    if (possible_phases(runs, *members).size() < 2) continue;
+    std::vector<std::string> doubts;
+    for (const std::size_t i : *members)
+      if (std::string doubt = doubt_text(runs[i]); !doubt.empty()) doubts.push_back(std::move(doubt));
+    sides.push_back(
+        fmt::format("in the {} {}", side_name(runs[members->front()].side), fmt::join(doubts, " and ")));
+  }
+  return fmt::format("{}", fmt::join(sides, "; "));
+}
+
 std::string conclusion_of_sweep(const Comparison& c) {
   std::string text = fmt::format("The diagram shows {} of a sweep.", plural(c.sweep.size(), "point"));
   for (const PhaseBoundary& b : c.boundaries)
@@ -79,7 +95,7 @@ std::vector<std::string> conclusion_sentences(const Comparison& c) {
   const std::vector<Match>& matches = c.matches;
   if (runs.empty() && (!c.sweep.empty() || !c.boundaries.empty())) return {conclusion_of_sweep(c)};
   const bool heights = heights_of(matches).size() > 1;
-  std::vector<std::string> differ, open;
+  std::vector<std::string> differ, undecided, open;
   std::size_t paired = 0, same = 0;
   for (const Match& match : matches) {
     if (match.experiments.empty() || match.simulations.empty()) continue;
@@ -87,6 +103,10 @@ std::vector<std::string> conclusion_sentences(const Comparison& c) {
     const std::string word = verdict_word(runs, match);
     if (word == "same") {
       ++same;
+      continue;
+    }
+    if (word == "undecided") {
+      undecided.push_back(fmt::format("{} ({})", condition_text(match, heights), doubts_of(runs, match)));
       continue;
     }
     (word == "differ" ? differ : open)
@@ -102,6 +122,7 @@ std::vector<std::string> conclusion_sentences(const Comparison& c) {
       fmt::format("Same phase on both sides at {} of {} {}.", same, paired,
                   heights ? "points (drive strength and height)" : "drive strengths")};
   if (!differ.empty()) text.push_back(fmt::format("They differ at {}.", fmt::join(differ, "; ")));
+  if (!undecided.empty()) text.push_back(fmt::format("Undecided at {}.", fmt::join(undecided, "; ")));
   if (!open.empty()) text.push_back(fmt::format("Undetermined at {}.", fmt::join(open, "; ")));
   for (std::string& onset : onset_sentences(c.boundaries)) text.push_back(std::move(onset));
   if (const std::string real = real_differences(c); !real.empty()) text.push_back(real);

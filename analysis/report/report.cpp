@@ -15,6 +15,7 @@
 #include "analysis/report/report_page.hpp"
 #include "analysis/report/run_figures.hpp"
 #include "analysis/report/snapshots_figure.hpp"
+#include "analysis/runs/match_verdict.hpp"
 #include "core/atomic_file.hpp"
 #include "core/json_text.hpp"
 
@@ -45,6 +46,7 @@ nlohmann::json differences_json(const std::vector<Difference>& differences,
                     {"statistics", number_or_null(d.statistics)},
                     {"seeds", number_or_null(d.seeds)},
                     {"tracers", number_or_null(d.tracers)},
+                    {"scale", number_or_null(d.scale)},
                     {"defects", number_or_null(d.defects)},
                     {"remainder", d.remainder()},
                     {"error", number_or_null(d.error())},

@@ -58,17 +58,17 @@ std::string runs_csv(const std::vector<Run>& runs) {
 std::string differences_csv(const Comparison& c) {
   std::string text =
       "gamma,n_l,number,unit,experiment,experiment_error,simulation,simulation_error,difference,filmed,"
-      "camera,statistics,seeds,tracers,defects,remainder,error,attribution\n";
+      "camera,statistics,seeds,tracers,scale,defects,remainder,error,attribution\n";
   const auto part = [](const std::optional<double>& v) {
     return csv_number(v.value_or(std::numeric_limits<double>::quiet_NaN()));
   };
   for (const Difference& d : c.differences)
-    text +=
-        fmt::format("{:.9g},{:.9g},{},{},{:.9g},{},{:.9g},{},{:.9g},{},{},{},{},{},{},{:.9g},{},{}\n",
-                    c.matches[d.match].gamma, c.matches[d.match].n_l, d.quantity, d.unit, d.experiment.value,
-                    part(d.experiment.error), d.simulation.value, part(d.simulation.error), d.difference(),
-                    part(d.filmed), part(d.camera), part(d.statistics), part(d.seeds), part(d.tracers),
-                    part(d.defects), d.remainder(), part(d.error()), csv_field(d.attribution()));
+    text += fmt::format("{:.9g},{:.9g},{},{},{:.9g},{},{:.9g},{},{:.9g},{},{},{},{},{},{},{},{:.9g},{},{}\n",
+                        c.matches[d.match].gamma, c.matches[d.match].n_l, d.quantity, d.unit,
+                        d.experiment.value, part(d.experiment.error), d.simulation.value,
+                        part(d.simulation.error), d.difference(), part(d.filmed), part(d.camera),
+                        part(d.statistics), part(d.seeds), part(d.tracers), part(d.scale), part(d.defects),
+                        d.remainder(), part(d.error()), csv_field(d.attribution()));
   return text;
 }
 

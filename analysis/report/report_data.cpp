@@ -7,6 +7,7 @@
 
 #include "analysis/observable/results.hpp"
 #include "analysis/report/page_parts.hpp"
+#include "analysis/runs/match_verdict.hpp"
 #include "core/json_text.hpp"
 
 namespace twincell::analysis {

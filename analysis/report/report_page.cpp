@@ -12,6 +12,7 @@
 #include "analysis/report/page_parts.hpp"
 #include "analysis/report/report_data.hpp"
 #include "analysis/report/report_tables.hpp"
+#include "analysis/runs/match_verdict.hpp"
 #include "core/atomic_file.hpp"
 #include "core/escape.hpp"
 #include "core/json_text.hpp"
@@ -126,7 +127,7 @@ std::vector<Section> sections_of(const Comparison& c, const std::vector<Figure>&
          "error. A difference is real if what is left exceeds two errors (more among many numbers, so that "
          "at most 5 "
          "% of the real ones are chance) and the difference between starts "
-         "with other defects. " +
+         "with other defects; an experiment between the simulation and its film is none. " +
              html_text(filmed_words(c)) +
              fmt::format("</p>\n<p class=\"needs-script\"><label><input type=\"checkbox\" id=\"only-real\" "
                          "checked> only the {} real of {} differences</label></p>\n",

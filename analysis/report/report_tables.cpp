@@ -13,6 +13,7 @@
 #include "analysis/observable/results.hpp"
 #include "analysis/report/page_parts.hpp"
 #include "analysis/report/report_csv.hpp"
+#include "analysis/runs/match_verdict.hpp"
 #include "core/escape.hpp"
 
 namespace twincell::analysis {
@@ -54,31 +55,42 @@ std::string numbers_of(const std::vector<Run>& runs, const std::vector<std::size
 /// An HTML table. The script of the page makes it sortable by its headings and downloadable.
 class Table {
  public:
-  Table(const std::string& name, const std::vector<std::string>& heads)
-      : html_(fmt::format("<div class=\"scroll\"><table data-name=\"{}\"><thead><tr>", name)) {
-    for (const std::string& head : heads) html_ += "<th>" + head + "</th>";
+  /// \param printed which columns are printed; empty: all
+  Table(const std::string& name, const std::vector<std::string>& heads, std::vector<bool> printed = {})
+      : html_(fmt::format("<div class=\"scroll\"><table data-name=\"{}\"><thead><tr>", name)),
+        printed_(std::move(printed)) {
+    for (const std::string& head : heads) add("th", head);
     html_ += "</tr></thead><tbody>\n";
   }
   void row(const std::string& attributes = {}) {
     if (open_) html_ += "</tr>\n";
     html_ += "<tr" + attributes + ">";
     open_ = true;
+    column_ = 0;
   }
-  void cell(const std::string& html, const char* kind = "") {
-    html_ += fmt::format("<td{}>{}</td>", *kind != 0 ? fmt::format(" class=\"{}\"", kind) : "", html);
-  }
+  void cell(const std::string& html, const std::string& kind = {}) { add("td", html, kind); }
   void cell(const std::optional<double>& v) { cell(v ? number(*v) : "–"); }
   [[nodiscard]] std::string html() const {
     return html_ + (open_ ? "</tr>\n" : "") + "</tbody></table></div>\n";
   }
 
  private:
+  void add(const char* tag, const std::string& html, std::string kind = {}) {
+    if (column_ < printed_.size() && !printed_[column_]) kind += kind.empty() ? "screen" : " screen";
+    ++column_;
+    html_ +=
+        fmt::format("<{0}{1}>{2}</{0}>", tag, kind.empty() ? "" : fmt::format(" class=\"{}\"", kind), html);
+  }
+
   std::string html_;
+  std::vector<bool> printed_;
+  std::size_t column_ = 0;
   bool open_ = false;
 };
 
 std::string with_error(const Measured& m) {
-  return m.error ? fmt::format("{:.4g} ± {:.2g}", m.value, *m.error) : fmt::format("{:.4g}", m.value);
+  return fmt::format("{:.4g}", m.value) +
+         (m.error ? fmt::format("<br><small>± {:.2g}</small>", *m.error) : std::string());
 }
 
 /// What a difference is made of: the effect of camera and tracking, and the parts of its error.
@@ -91,6 +103,7 @@ std::string composition(const Difference& d) {
   add("statistics ±", d.statistics);
   add("seeds ±", d.seed_error());
   add("tracers ±", d.tracers);
+  add("scale ±", d.scale);
   add("between starts", d.defects);
   return parts.empty() ? "–" : fmt::format("{}", fmt::join(parts, "; "));
 }
@@ -147,9 +160,17 @@ std::string runs_table(const Comparison& c) {
   std::stable_sort(columns.begin(), columns.end(),
                    [](const Column& a, const Column& b) { return a.rank < b.rank; });
 
+  // A page is as wide as about a dozen columns.
+  constexpr std::size_t kMaxPrinted = 5;
   std::vector<std::string> heads = {"run", "side", "Γ"};
-  for (const Column& column : columns) heads.push_back(column.head);
-  Table table("runs", heads);
+  std::vector<bool> printed(heads.size(), true);
+  std::size_t others = 0;
+  for (const Column& column : columns) {
+    const bool always = column.name == "phase" || column.name == "s_b" || column.name == "s_c";
+    printed.push_back(always || (column.rank == 0 && others++ < kMaxPrinted));
+    heads.push_back(column.head);
+  }
+  Table table("runs", heads, std::move(printed));
   for (std::size_t i = 0; i < c.runs.size(); ++i) {
     table.row(fmt::format(" data-run=\"{}\"", i));
     table.cell(html_text(c.runs[i].name), "nowrap");
@@ -157,7 +178,10 @@ std::string runs_table(const Comparison& c) {
     table.cell(c.runs[i].gamma);
     for (const Column& column : columns) table.cell(column.cells[i]);
   }
-  return table.html();
+  return "<p class=\"in-print\">Printed: the phases, s<sub>b</sub>, s<sub>c</sub> and the numbers that "
+         "really "
+         "differ; runs.csv has all.</p>\n" +
+         table.html();
 }
 
 std::string boundary_table(const std::vector<PhaseBoundary>& boundaries) {
@@ -180,25 +204,21 @@ std::string boundary_table(const std::vector<PhaseBoundary>& boundaries) {
 }
 
 std::string differences_table(const Comparison& c) {
-  Table table("differences",
-              {"Γ", "N<sub>l</sub>", "number", "unit", "experiment", "simulation", "difference",
-               "what is left", "error", "in errors", "made of", "attributed to"});
+  Table table("differences", {"Γ", "N<sub>l</sub>", "number", "experiment", "simulation", "difference",
+                              "what is left", "in errors", "attributed to, made of"});
   for (const Difference& d : c.differences) {
     table.row(fmt::format(" data-run=\"{}\" class=\"{}\"", c.matches[d.match].experiments.front(),
                           d.is_real() ? "real" : "agrees"));
     table.cell(c.matches[d.match].gamma);
     table.cell(c.matches[d.match].n_l);
-    table.cell(typeset(d.quantity));
-    table.cell(html_text(d.unit));
+    table.cell(fmt::format("{}<br><small>{}</small>", typeset(d.quantity), html_text(d.unit)));
     table.cell(with_error(d.experiment), "nowrap");
     table.cell(with_error(d.simulation), "nowrap");
     table.cell(d.difference());
-    table.cell(d.remainder());
-    table.cell(d.error());
+    table.cell(with_error({d.remainder(), d.error()}), "nowrap");
     const auto t = d.in_errors();
     table.cell(t ? fmt::format("{:.1f}", *t) : "–");
-    table.cell(composition(d), "words");
-    table.cell(d.attribution(), "words");
+    table.cell(d.attribution() + "<br><small>" + composition(d) + "</small>", "words");
   }
   return table.html();
 }

@@ -11,6 +11,7 @@
 
 #include "analysis/motion/tracers.hpp"
 #include "analysis/neighbours/bond_orientation.hpp"
+#include "analysis/runs/length_power.hpp"
 #include "analysis/statistics/statistics.hpp"
 #include "core/plural.hpp"
 
@@ -86,6 +87,20 @@ std::optional<Measured> measured(const std::vector<Run>& runs, const std::vector
   return m;
 }
 
+/// Error of a number of the experiments by the errors of their scales, which one camera and cell share.
+std::optional<double> error_by_scale(const std::vector<Run>& runs, const Match& match, const Result& number,
+                                     double value) {
+  double sum = 0;
+  bool any = false;
+  for (const std::size_t i : match.experiments) {
+    any = any || runs[i].scale_error;
+    sum += runs[i].scale_error.value_or(0);
+  }
+  const double power = length_power(number.unit);
+  if (!any || power == 0) return std::nullopt;
+  return std::abs(power * value) * sum / static_cast<double>(match.experiments.size());
+}
+
 /// Sets the spread between seeds of one start, and the difference between starts.
 void compare_simulations(const std::vector<Run>& runs, const Match& match, Difference& d) {
   std::map<std::string, std::vector<double>> of_start;
@@ -145,7 +160,9 @@ class Marked : public TrajectorySource {
 }  // namespace
 
 std::optional<double> Difference::error() const {
-  return in_quadrature({statistics, seed_error(), tracers});
+  // The scale alone says nothing of the scatter.
+  if (!statistics && !seeds && !tracers) return std::nullopt;
+  return in_quadrature({statistics, seed_error(), tracers, scale});
 }
 
 std::optional<double> Difference::seed_error() const {
@@ -160,9 +177,17 @@ std::optional<double> Difference::in_errors() const {
   return remainder() / *e;
 }
 
-bool Difference::is_real() const {
+bool Difference::is_beyond_error() const {
   const auto t = in_errors();
-  return t && std::abs(*t) > significant && !(defects && std::abs(remainder()) <= *defects);
+  return t && std::abs(*t) > significant;
+}
+
+bool Difference::is_by_camera() const {
+  return is_beyond_error() && camera_share().value_or(0) >= 1;
+}
+
+bool Difference::is_real() const {
+  return is_beyond_error() && !is_by_camera() && !(defects && std::abs(remainder()) <= *defects);
 }
 
 std::optional<double> Difference::camera_share() const {
@@ -183,13 +208,15 @@ std::string Difference::attribution() const {
   if (const auto share = camera_share())
     by_camera = *share < 1 ? fmt::format("camera and tracking cause {:.0f} % of it", 100 * *share)
                            : "camera and tracking cause all of it";
-  if (std::abs(*t) <= significant) {
+  if (!is_beyond_error()) {
     if (std::abs(*t) > kSignificant)
       return fmt::format("{:.1f} errors, no more than chance gives among so many numbers", std::abs(*t));
     if (!by_camera.empty() && size > kSignificant * *error())
       return by_camera + "; the rest is within its error";
-    const std::pair<const char*, std::optional<double>> sources[] = {
-        {"statistics", statistics}, {"seeds", seed_error()}, {"choice of tracers", tracers}};
+    const std::pair<const char*, std::optional<double>> sources[] = {{"statistics", statistics},
+                                                                     {"seeds", seed_error()},
+                                                                     {"choice of tracers", tracers},
+                                                                     {"scale", scale}};
     const auto largest = std::max_element(
         std::begin(sources), std::end(sources),
         [](const auto& a, const auto& b) { return a.second.value_or(0) < b.second.value_or(0); });
@@ -198,6 +225,7 @@ std::string Difference::attribution() const {
       text += fmt::format(", known from {} runs only", seed_runs);
     return text;
   }
+  if (is_by_camera()) return by_camera;
   if (!is_real())
     return fmt::format("{:.1f} errors; not larger than the difference between starts with other defects",
                        std::abs(*t));
@@ -290,6 +318,7 @@ std::vector<Difference> find_differences(const std::vector<Run>& runs, const std
       }
       d.statistics = in_quadrature({experiment->error, other_error});
       d.tracers = spread_over_lines(checks, match, r.name);
+      d.scale = error_by_scale(runs, match, r, experiment->value);
       compare_simulations(runs, match, d);
       // The scatter between seeds contains that within a simulation.
       if (!experiment->error && (other_error || d.seeds || d.tracers))
@@ -328,14 +357,14 @@ std::string differences_text(const std::vector<Difference>& differences, const s
     return v ? fmt::format("{:.3g}", *v) : std::string("-");
   };
   const Conditions conditions(matches);
-  std::string text = fmt::format("{}  {:<22}{:>11}{:>11}{:>11}{:>10}{:>10}{:>10}{:>10}  {}\n",
+  std::string text = fmt::format("{}  {:<22}{:>11}{:>11}{:>11}{:>10}{:>10}{:>10}{:>10}{:>10}  {}\n",
                                  conditions.head(), "number", "experiment", "simulation", "difference",
-                                 "camera", "statist.", "seeds", "tracers", "attributed to");
+                                 "camera", "statist.", "seeds", "tracers", "scale", "attributed to");
   for (const Difference& d : differences)
-    text += fmt::format("{}  {:<22}{:>11.4g}{:>11.4g}{:>11.3g}{:>10}{:>10}{:>10}{:>10}  {}\n",
+    text += fmt::format("{}  {:<22}{:>11.4g}{:>11.4g}{:>11.3g}{:>10}{:>10}{:>10}{:>10}{:>10}  {}\n",
                         conditions.of(matches[d.match]), d.quantity, d.experiment.value, d.simulation.value,
                         d.difference(), part(d.camera), part(d.statistics), part(d.seeds), part(d.tracers),
-                        d.attribution());
+                        part(d.scale), d.attribution());
   return text;
 }
 
@@ -344,12 +373,12 @@ std::string real_differences_text(const std::vector<Difference>& differences,
   if (differences.empty()) return {};
   const Conditions conditions(matches);
   std::string rows;
-  std::size_t others = 0, without_error = 0;
+  std::size_t others = 0, without_error = 0, by_camera = 0;
   std::size_t real = 0, not_filmed = 0;
   bool other_starts = true;
   for (const Difference& d : differences) {
     if (!d.is_real()) {
-      ++(d.in_errors() ? others : without_error);
+      ++(!d.in_errors() ? without_error : d.is_by_camera() ? by_camera : others);
       continue;
     }
     ++real;
@@ -375,6 +404,9 @@ std::string real_differences_text(const std::vector<Difference>& differences,
           not_filmed, not_filmed == 1 ? "is" : "are");
     if (!other_starts) rows += "one start alone does not show whether defects cause a difference\n";
   }
+  if (by_camera > 0)
+    rows += fmt::format("camera and tracking cause all of the difference of {}\n",
+                        plural(by_camera, "other number"));
   if (without_error > 0)
     rows += fmt::format("no error is known of {}, so that nothing follows from {}\n",
                         plural(without_error, "other number"), without_error == 1 ? "it" : "them");

@@ -9,7 +9,8 @@
 ///
 /// The first term is the effect of camera and tracking on the number. The second term compares like with
 /// like. It is compared with the other causes of scatter: the statistics of both sides, the choice of the
-/// tracers, the seed, and the start with its defects.
+/// tracers, the seed, the error of the scale in which the experiment was measured, and the start with its
+/// defects.
 
 #include <optional>
 #include <string>
@@ -39,6 +40,7 @@ struct Difference {
   std::optional<double> seeds;        ///< largest standard deviation between simulations of one start
   std::size_t seed_runs = 0;          ///< simulations of that start
   std::optional<double> tracers;      ///< standard deviation of E - S over three lines of tracers
+  std::optional<double> scale;        ///< error of E by the stated error of the scale of its pictures
   std::optional<double> defects;  ///< largest difference between the means of simulations of different starts
   double significant = 2;  ///< number of errors above which it is real, set by find_differences for all
 
@@ -49,12 +51,17 @@ struct Difference {
   /// seeds, widened by t/1.96 (Student's t, n - 1 degrees of freedom) because n runs give an uncertain s. The
   /// result is 7.9 s for two runs, 2.5 s for three, 1.2 s for ten.
   [[nodiscard]] std::optional<double> seed_error() const;
-  /// Statistics, seeds and tracers added in quadrature, as far as they are known; absent if none of them is
-  /// known.
+  /// Statistics, seeds, tracers and scale added in quadrature, as far as they are known; absent if none of
+  /// the first three is known.
   [[nodiscard]] std::optional<double> error() const;
   /// remainder / error; absent without an error, and if one side has none.
   [[nodiscard]] std::optional<double> in_errors() const;
-  /// Whether the remainder exceeds `significant` errors and the difference between starts with other defects.
+  /// Whether the remainder exceeds `significant` errors.
+  [[nodiscard]] bool is_beyond_error() const;
+  /// Whether E is between S and F in spite of that: a smaller effect of the camera explains it.
+  [[nodiscard]] bool is_by_camera() const;
+  /// Whether the remainder exceeds its errors and the difference between starts with other defects, and
+  /// camera and tracking do not cause all of it.
   [[nodiscard]] bool is_real() const;
   /// The share of the difference that camera and tracking cause, if it is above one half.
   [[nodiscard]] std::optional<double> camera_share() const;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/runs/phase_evidence.hpp"
+
 namespace twincell::analysis {
 namespace {
 
@@ -47,6 +49,7 @@ std::vector<PhaseBoundary> find_boundaries(const std::vector<Run>& runs) {
   std::vector<Gammas> gammas;
   for (const BedPhase onset : {BedPhase::bouncing, BedPhase::convecting}) {
     std::vector<double> leaders;  // N_l of the first run of each boundary
+    std::vector<double> members;  // runs of each boundary, undecided ones too
     const std::size_t first = found.size();
     for (const Run& run : runs) {
       if (run.phase == BedPhase::undetermined) continue;
@@ -58,13 +61,14 @@ std::vector<PhaseBoundary> find_boundaries(const std::vector<Run>& runs) {
         found.push_back({.side = run.side, .start = run.start, .onset = onset});
         gammas.emplace_back();
         leaders.push_back(run.n_l);
+        members.push_back(0);
       }
       PhaseBoundary& boundary = found[b];
-      const bool has = run.phase == BedPhase::convecting ||
-                       (onset == BedPhase::bouncing && run.phase == BedPhase::bouncing);
-      (has ? gammas[b].with : gammas[b].without).push_back(run.gamma);
+      boundary.n_l += (run.n_l - boundary.n_l) / ++members[b - first];
+      const OnsetEvidence evidence = evidence_of(run, onset);
+      if (evidence == OnsetEvidence::undecided) continue;
+      (evidence == OnsetEvidence::present ? gammas[b].with : gammas[b].without).push_back(run.gamma);
       ++boundary.n_runs;
-      boundary.n_l += (run.n_l - boundary.n_l) / static_cast<double>(boundary.n_runs);
     }
   }
   for (std::size_t b = 0; b < found.size(); ++b) bracket(gammas[b], found[b]);
@@ -88,7 +92,7 @@ std::string boundary_text(const PhaseBoundary& boundary) {
   if (boundary.below && boundary.above)
     return fmt::format("between {:.3g} and {:.3g}", *boundary.below, *boundary.above);
   if (!boundary.below && !boundary.above)
-    return boundary.overlap ? "undetermined (runs differ)" : "not found";
+    return boundary.overlap ? "undetermined (runs differ)" : boundary.n_runs > 0 ? "not found" : "undecided";
   return boundary.below ? fmt::format("above {:.3g}", *boundary.below)
                         : fmt::format("below {:.3g}", *boundary.above);
 }

@@ -15,8 +15,8 @@ struct PhaseBoundary {
   Side side = Side::simulation;
   std::string start = {};               ///< kind of start of the simulation; empty: unknown
   BedPhase onset = BedPhase::bouncing;  ///< the phase that begins here: bouncing or convecting
-  double n_l = 0;                       ///< N_l sigma, mean of the runs
-  std::size_t n_runs = 0;               ///< runs of known phase
+  double n_l = 0;                       ///< N_l sigma, mean of the runs of known phase
+  std::size_t n_runs = 0;               ///< runs that decide whether they have the phase
   /// Lower end of the bracket: the largest Gamma of the runs at which the phase is still absent, and below
   /// which no run has it. Absent if every run has the phase, or seeds differ at the lowest of them.
   std::optional<double> below = {};
@@ -34,7 +34,8 @@ struct PhaseBoundary {
 };
 
 /// One boundary of each kind for each side, start and N_l (runs within 10 %) that has runs of known phase. A
-/// convecting bed also counts as bouncing.
+/// convecting bed also counts as bouncing. A run that leaves open whether it has the phase
+/// (phase_evidence.hpp) does not count.
 std::vector<PhaseBoundary> find_boundaries(const std::vector<Run>& runs);
 
 /// Origin of a boundary: "experiment", "simulation", "simulation (random)", "sweep (random)", "sweep (random,

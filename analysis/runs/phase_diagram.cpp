@@ -122,18 +122,4 @@ BedPhase common_phase(const std::vector<Run>& runs, const std::vector<std::size_
   return agree ? phase : BedPhase::undetermined;
 }
 
-MatchVerdict verdict(const std::vector<Run>& runs, const Match& match) {
-  if (match.simulations.empty()) return MatchVerdict::only_experiment;
-  if (match.experiments.empty()) return MatchVerdict::only_simulation;
-  const BedPhase experiment = common_phase(runs, match.experiments),
-                 simulation = common_phase(runs, match.simulations);
-  if (experiment == BedPhase::undetermined || simulation == BedPhase::undetermined)
-    return MatchVerdict::undetermined;
-  return experiment == simulation ? MatchVerdict::same : MatchVerdict::differ;
-}
-
-std::string verdict_word(const std::vector<Run>& runs, const Match& match) {
-  return std::string(row_of(kMatchVerdicts, verdict(runs, match)).word);
-}
-
 }  // namespace twincell::analysis

@@ -2,7 +2,6 @@
 /// \file
 /// Phase diagram: runs of experiment and simulation, ordered and matched by drive strength.
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,7 +9,6 @@
 #include "analysis/motion/bed_phase.hpp"
 #include "analysis/motion/snapshots.hpp"
 #include "analysis/observable/observable.hpp"
-#include "core/choice.hpp"
 
 namespace twincell::analysis {
 
@@ -47,7 +45,8 @@ struct Run {
   double n_l = 0;           ///< N_l sigma = N sigma/L_x with N the beads of the first frame
   std::size_t n_beads = 0;  ///< N
   std::size_t n_frames = 0;
-  int phases_per_cycle = 0;  ///< N_k; 0: not phase-locked
+  std::optional<double> scale_error;  ///< relative standard error of the pixels per sigma, if it is stated
+  int phases_per_cycle = 0;           ///< N_k; 0: not phase-locked
   BedPhase phase = BedPhase::undetermined;
   std::vector<Result> results;
   double cutoff = 0;  ///< neighbour cutoff of the bond order, sigma
@@ -84,22 +83,5 @@ std::string condition_text(const Match& match, bool height);
 
 /// Common phase of several runs (seeds); undetermined if they disagree or if there are no runs.
 BedPhase common_phase(const std::vector<Run>& runs, const std::vector<std::size_t>& members);
-
-/// Verdict on the phases of a match.
-enum class MatchVerdict { same, differ, only_experiment, only_simulation, undetermined };
-/// All verdicts with their words.
-inline constexpr std::array kMatchVerdicts = {
-    Choice<MatchVerdict>{MatchVerdict::same, "same", "experiment and simulation have the same phase"},
-    Choice<MatchVerdict>{MatchVerdict::differ, "differ", "experiment and simulation have different phases"},
-    Choice<MatchVerdict>{MatchVerdict::only_experiment, "only experiment", "no simulation has this Gamma"},
-    Choice<MatchVerdict>{MatchVerdict::only_simulation, "only simulation", "no experiment has this Gamma"},
-    Choice<MatchVerdict>{MatchVerdict::undetermined, "undetermined",
-                         "the runs of one side disagree or have no phase"}};
-/// Compares the common phase of the experiments of a match with that of its simulations; a side without runs
-/// is named instead.
-/// \param runs the runs to which the indices of the match refer
-MatchVerdict verdict(const std::vector<Run>& runs, const Match& match);
-/// The word of the verdict on a match.
-std::string verdict_word(const std::vector<Run>& runs, const Match& match);
 
 }  // namespace twincell::analysis

@@ -97,7 +97,8 @@ std::string cell_text(const SyntheticCamera& camera, const TrajectoryInfo& info,
                       int first_phase) {
   const PixelFrame& map = camera.pixel_frame();
   std::string text = fmt::format(
-      "[camera]\npixels_per_sigma = {:.17g}\norigin_px = [{:.17g}, {:.17g}]\nframes_per_cycle = "
+      "[camera]\npixels_per_sigma = {:.17g}\nscale_error_px = 0\norigin_px = [{:.17g}, "
+      "{:.17g}]\nframes_per_cycle = "
       "{}\nfirst_phase = {}\n",
       map.pixels_per_sigma, map.origin.x_px + info.box.lower.x() * map.pixels_per_sigma, map.origin.y_px,
       info.phases_per_cycle, first_phase);

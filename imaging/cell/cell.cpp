@@ -50,6 +50,21 @@ std::optional<Boundary> sides_in(const ConfigSection& box) {
       ->value;
 }
 
+/// The standard error of the scale: the stated one, otherwise that of the calibration that gave the scale.
+std::optional<double> scale_error_in(const ConfigSection& camera, const CellDescription& cell) {
+  constexpr const char* kScale = "camera.pixels_per_sigma";
+  const std::vector<std::string>& taken = cell.included.taken;
+  if (const auto stated = camera.number_in("scale_error_px", 0, 1e4)) {
+    if (!cell.pixels_per_sigma)
+      throw ConfigError(camera.where("scale_error_px"),
+                        fmt::format("is the error of {}, which is not stated.", kScale));
+    return stated;
+  }
+  if (std::find(taken.begin(), taken.end(), kScale) == taken.end()) return std::nullopt;
+  const double error = read_calibration(cell.included.file).find(kScale)->standard_error.front();
+  return std::isfinite(error) ? std::optional(error) : std::nullopt;
+}
+
 /// Discs as wide as two beads, or half as wide, are no discs of beads of one sigma.
 void refuse_far_disc_width(const CellDescription& cell, const ConfigSection& camera) {
   constexpr double kFar = 2;
@@ -70,7 +85,11 @@ CellDescription read_cell(const std::filesystem::path& path, const std::vector<s
   Config config = path.empty() ? Config::from_text("", "the command line") : Config::from_file(path);
   // Assignments are applied before units are converted, so that an assigned spelling replaces another
   // spelling of the same quantity in the file.
-  for (const std::string& assignment : assignments) displace_spellings(config, assignment);
+  for (const std::string& assignment : assignments) {
+    displace_spellings(config, assignment);
+    // The stated error is that of the stated scale.
+    if (assignment.starts_with("camera.pixels_per_sigma=")) config.erase("camera.scale_error_px");
+  }
   displace_third_quantity(config, assignments);
   for (const std::string& assignment : assignments) config.assign(assignment);
   CellDescription cell;
@@ -81,6 +100,7 @@ CellDescription read_cell(const std::filesystem::path& path, const std::vector<s
 
   const ConfigSection camera = root.section("camera");
   cell.pixels_per_sigma = camera.number_in("pixels_per_sigma", 1, 1e4);
+  cell.scale_error_px = scale_error_in(camera, cell);
   cell.disc_width_px = camera.number_in("disc_width_px", 1, 1e4);
   refuse_far_disc_width(cell, camera);
   constexpr double kFarthest_px = 1e6;

@@ -4,6 +4,7 @@
 ///
 ///     [camera]
 ///     pixels_per_sigma = 15.0      # camera pixels per bead diameter
+///     scale_error_px = 0.002       # standard error of pixels_per_sigma
 ///     disc_width_px = 15.2         # width of the discs of beads of one sigma, if glare or exposure moves
 ///     their rims origin_px = [40.0, 560.0]    # lower-left inside corner, plate at its mean height
 ///     frames_per_cycle = 20        # 0 or absent: not phase-locked
@@ -52,6 +53,7 @@ namespace twincell::imaging {
 /// Description of a cell. Absent values are unknown.
 struct CellDescription {
   std::optional<double> pixels_per_sigma;  ///< > 0
+  std::optional<double> scale_error_px;    ///< standard error of pixels_per_sigma, >= 0
   std::optional<double> disc_width_px;     ///< of beads of one sigma; absent: pixels_per_sigma
   std::optional<PixelPoint> origin;        ///< px
   double rotation_deg = 0;                 ///< of the picture, counter-clockwise

@@ -10,6 +10,12 @@ std::vector<KeyRow> rows() {
   const std::vector<std::string> laboratory = {"scale.sigma_mm=2.0", "scale.gravity_m_s2=9.81"};
   return {
       {"camera.pixels_per_sigma", "px", "located bead diameter", "15.0", "camera pixels per bead diameter"},
+      {"camera.scale_error_px",
+       "px",
+       "none",
+       "0.002",
+       "standard error of pixels_per_sigma, which compare adds to the error of every length",
+       {"camera.pixels_per_sigma=15.0"}},
       {"camera.disc_width_px", "px", "that of pixels_per_sigma", "15.2",
        "width in the picture of a bead of one sigma, where glare, exposure or a grey level of its own moves "
        "its rim; radii are measured in it"},

@@ -125,7 +125,10 @@ CellDescription resolve_cell(const TrackRequest& o) {
                           fmt::format("and --set {} state the same; give only one of the two.", assignment));
   refuse_unused_phases(o);
   CellDescription cell = read_cell(o.cell_file, assignments);
-  if (o.pixels_per_sigma) cell.pixels_per_sigma = o.pixels_per_sigma;
+  if (o.pixels_per_sigma) {
+    cell.pixels_per_sigma = o.pixels_per_sigma;
+    cell.scale_error_px.reset();  // that of the file is the error of another number
+  }
   if (o.origin) cell.origin = PixelPoint{(*o.origin)[0], (*o.origin)[1]};
   if (o.frames_per_cycle) cell.phase_lock.frames_per_cycle = *o.frames_per_cycle;
   if (o.first_phase) cell.phase_lock.first_phase = *o.first_phase;

@@ -130,6 +130,7 @@ std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, cons
                                {"width_px", stack.width_px},
                                {"height_px", stack.height_px},
                                {"bright", cell.bright}}}};
+  if (cell.scale_error_px) document["camera"]["scale_error_px"] = *cell.scale_error_px;
   if (plan.pixel_frame.lens) {
     document["camera"]["rotation_deg"] = cell.rotation_deg;
     document["camera"]["distortion"] = cell.distortion;

@@ -116,6 +116,59 @@ TEST(Differences, MissingFilmIsReportedOnlyWithoutFilm) {
       << text();
 }
 
+// A scale wrong by 0.1 % changes a length of 4 by 0.004 and an area of 4 by 0.008; a ratio not at all.
+TEST(Differences, TheErrorOfTheScaleIsPartOfTheErrorOfALength) {
+  Runs runs = {run(Side::experiment, 4.004, 1e-4), run(Side::simulation, 4, 1e-4)};
+  EXPECT_TRUE(only(runs).is_real());
+  EXPECT_FALSE(only(runs).scale);
+  runs[0].scale_error = 1e-3;
+  EXPECT_NEAR(only(runs).scale.value(), 4.004e-3, 1e-9);
+  EXPECT_NEAR(only(runs).in_errors().value(), 1, 2e-3);
+  EXPECT_FALSE(only(runs).is_real());
+  EXPECT_NE(only(runs).attribution().find("largest part is scale"), std::string::npos)
+      << only(runs).attribution();
+  for (auto& r : runs) r.results[0].unit = "sigma^2";
+  EXPECT_NEAR(only(runs).scale.value(), 8.008e-3, 1e-9);
+  for (auto& r : runs) r.results[0].unit = "1";
+  EXPECT_FALSE(only(runs).scale);
+  EXPECT_TRUE(only(runs).is_real());
+}
+
+// The scale says nothing of the scatter of the numbers.
+TEST(Differences, TheErrorOfTheScaleAloneIsNoError) {
+  Runs runs = {run(Side::experiment, 4, 0), run(Side::simulation, 3, 0)};
+  for (auto& r : runs) r.results[0].interval.reset();
+  runs[0].scale_error = 1e-3;
+  EXPECT_TRUE(only(runs).scale);
+  EXPECT_FALSE(only(runs).error());
+}
+
+// One camera and cell: the errors of two scales do not average out.
+TEST(Differences, ErrorsOfTheScaleOfSeveralExperimentsAreCommon) {
+  Runs runs = {run(Side::experiment, 4, 1e-4), run(Side::experiment, 4, 1e-4),
+               run(Side::simulation, 4, 1e-4)};
+  runs[0].scale_error = 1e-3;
+  runs[1].scale_error = 2e-3;
+  EXPECT_NEAR(only(runs).scale.value(), 6e-3, 1e-9);
+}
+
+// S = 0.7, F = 0.5, E = 0.6: the remainder of 0.1 is many errors, but a smaller effect of the camera explains
+// E.
+TEST(Differences, WhatCameraAndTrackingCauseIsNotReal) {
+  const Runs runs = {run(Side::experiment, 0.6, 0.001), run(Side::simulation, 0.7, 0.001)};
+  Checks checks;
+  checks.filmed.push_back(
+      {.run = 1, .seen = {number("s_b", 0.7, 0.001)}, .filmed = {number("s_b", 0.5, 0.001)}});
+  const Difference d = only(runs, checks);
+  EXPECT_TRUE(d.is_beyond_error());
+  EXPECT_FALSE(d.is_real());
+  EXPECT_EQ(d.attribution(), "camera and tracking cause all of it");
+  const auto matches = match_runs(runs);
+  EXPECT_EQ(real_differences_text(find_differences(runs, matches, checks), matches),
+            "camera and tracking cause all of the difference of 1 other number\n"
+            "0 other numbers agree within their errors (differences.csv in the report).\n");
+}
+
 TEST(Differences, WithinTheErrorTheLargestSourceIsNamed) {
   Runs runs = {run(Side::experiment, 1.0, 0.01), run(Side::simulation, 0.8, 0.01),
                run(Side::simulation, 1.2, 0.01), run(Side::simulation, 1.1, 0.01)};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "analysis/runs/match_verdict.hpp"
 #include "analysis/runs/phase_diagram.hpp"
 #include "tests/support/rigid_bed.hpp"
 

@@ -5,6 +5,8 @@
 #include "imaging/cell/cell.hpp"
 #include "tests/support/complaint.hpp"
 #include "tests/support/key_table_checks.hpp"
+#include "tests/support/put_file.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace twincell::imaging {
 namespace {
@@ -48,6 +50,31 @@ TEST(CellKeys, DiscsAreAboutAsWideAsTheirBeads) {
   for (const char* far : {"7.4", "30.1"})
     expect_refusal<ConfigError>([&] { (void)width(far); }, "camera.disc_width_px",
                                 "between half and twice camera.pixels_per_sigma (15)");
+}
+
+TEST(CellKeys, TheErrorOfTheScaleIsThatOfTheStatedScale) {
+  const TemporaryFolder folder;
+  put_file(folder / "CELL.toml", "[camera]\npixels_per_sigma = 15.0\nscale_error_px = 0.002\n");
+  EXPECT_EQ(read_cell(folder / "CELL.toml").scale_error_px, 0.002);
+  EXPECT_FALSE(read_cell(folder / "CELL.toml", {"camera.pixels_per_sigma=14"}).scale_error_px);
+  EXPECT_FALSE(read_cell("", {"camera.pixels_per_sigma=14"}).scale_error_px);
+  expect_refusal<ConfigError>([] { (void)read_cell("", {"camera.scale_error_px=0.1"}); },
+                              "is the error of camera.pixels_per_sigma, which is not stated");
+}
+
+// The scale of a calibration comes with its error, unless the cell states a scale of its own.
+TEST(CellKeys, TheErrorOfTheScaleMayComeFromACalibration) {
+  const TemporaryFolder folder;
+  Calibration calibration;
+  calibration.put({.name = "camera.pixels_per_sigma",
+                   .value = {15},
+                   .standard_error = {0.003},
+                   .method = "by hand",
+                   .data = "sha256:00"});
+  put_file(folder / "a.calibration.toml", calibration_text(calibration, "test"));
+  put_file(folder / "CELL.toml", "[calibration]\nfrom = \"a.calibration.toml\"\n");
+  EXPECT_EQ(read_cell(folder / "CELL.toml").scale_error_px, 0.003);
+  EXPECT_FALSE(read_cell(folder / "CELL.toml", {"camera.pixels_per_sigma=14"}).scale_error_px);
 }
 
 TEST(CellKeys, TheDriveHasItsHarmonics) {

@@ -64,6 +64,15 @@ TEST(CellDraft, AWallIsTiltedOnlyIfItMatters) {
   EXPECT_NE(draft_cell(s, answers).find("cell.side_tilt"), nullptr);
 }
 
+TEST(CellDraft, TheScaleHasItsErrorAsAKey) {
+  CellSurvey s = survey();
+  const CellAnswers answers{.sigma_mm = 2, .frequency_hz = 20};
+  EXPECT_EQ(read(draft_cell(s, answers), s).scale_error_px, 0.006);
+  s.diameter_stated = true;
+  s.beads->diameter.error = 0;
+  EXPECT_EQ(draft_cell(s, answers).find("camera.scale_error_px"), nullptr);
+}
+
 TEST(CellDraft, AClearSecondHarmonicIsPartOfTheDrive) {
   CellSurvey s = survey();
   const CellAnswers answers{.sigma_mm = 2, .frequency_hz = 20};
