@@ -18,6 +18,7 @@
 #include "core/json_text.hpp"
 #include "core/output_rules.hpp"
 #include "core/sha256.hpp"
+#include "imaging/settings/configure_locator.hpp"
 
 // The list: a kind of calibration is calibrate_NAME.cpp, which defines add_calibrate_NAME. Order of --help:
 // each kind can use the results of the earlier ones.
@@ -85,6 +86,21 @@ nlohmann::json json_of(const Measurement& m) {
   return j;
 }
 
+/// Whether the beads of the first frames are brighter than the background, as `locate` and `new` find it.
+bool shows_bright_beads(const CalibrateFlags& flags, const imaging::CellDescription& cell,
+                        const Common& common) {
+  imaging::LocatorOptions given;
+  given.diameter_px = flags.diameter_px > 0 ? flags.diameter_px : cell.disc_px().value_or(0);
+  given.polarity_known = false;
+  try {
+    const auto frames = open_stack(flags.stack, common);
+    imaging::FramesAhead ahead(*frames);
+    return imaging::configure_locator(ahead, given, common.n_threads()).locator.preprocess.bright;
+  } catch (const imaging::NoDiscs&) {
+    return false;  // edges alone: dark, unless --bright
+  }
+}
+
 }  // namespace
 
 std::string data_hash(const std::string& stack) {
@@ -110,7 +126,12 @@ void add_stack_flags(CLI::App& verb, Common& common, CalibrateFlags& flags) {
   verb.add_option("--diameter", flags.diameter_px,
                   "Bead diameter, px; default: the scale in CELL.toml, otherwise estimated")
       ->check(CLI::Range(3.0, 400.0));
-  verb.add_flag("--bright", flags.bright, "Beads, walls and plate are brighter than the background");
+  CLI::Option* bright =
+      verb.add_flag("--bright", flags.bright, "Beads, walls and plate are brighter than the background");
+  verb.add_flag("--dark", flags.dark,
+                "Beads, walls and plate are darker than the background; default: as CELL.toml states if they "
+                "are bright there, otherwise determined from the first frames")
+      ->excludes(bright);
   add_output_flags(verb, common, flags);
 }
 
@@ -118,16 +139,29 @@ imaging::CellDescription cell_of(const CalibrateFlags& flags) {
   return flags.cell_file.empty() ? imaging::CellDescription{} : imaging::read_cell(flags.cell_file);
 }
 
+imaging::CellDescription filmed_cell(const CalibrateFlags& flags, const Common& common) {
+  imaging::CellDescription cell = cell_of(flags);
+  if (flags.bright || flags.dark) {
+    cell.bright = flags.bright;
+  } else if (!cell.bright && shows_bright_beads(flags, cell, common)) {
+    cell.bright = true;
+    note(common, flags.stack +
+                     ": the beads are brighter than the background, and so are walls and plate (--dark: "
+                     "darker).");
+  }
+  return cell;
+}
+
 calibration::CellGeometry geometry_of(const CalibrateFlags& flags, const imaging::CellDescription& cell,
                                       const Common& common, calibration::StackEdges& edges) {
-  const bool bright = flags.bright || cell.bright;
   const double diameter = calibration::diameter_for_edges(
-      flags.stack, bright, flags.diameter_px > 0 ? flags.diameter_px : cell.pixels_per_sigma.value_or(0));
+      flags.stack, cell.bright,
+      flags.diameter_px > 0 ? flags.diameter_px : cell.pixels_per_sigma.value_or(0));
   const auto frames = open_stack(flags.stack, common);
   {
     ProgressBar bar(common, "edges");
     edges = calibration::read_stack_edges(*frames,
-                                          {.bright = bright,
+                                          {.bright = cell.bright,
                                            .diameter_px = diameter,
                                            .refine = cell.refine.value_or(imaging::BeadsAtEdges{}.refine)},
                                           common.n_threads(), bar);
@@ -149,10 +183,8 @@ std::optional<Measurement> calibrated(const imaging::CellDescription& cell, cons
 std::optional<KnownNumber> scale_of(const imaging::CellDescription& cell,
                                     const calibration::CellGeometry& geometry) {
   if (cell.pixels_per_sigma) {
-    KnownNumber scale{.value = *cell.pixels_per_sigma, .error = std::nullopt, .from = "the cell's scale"};
-    if (const auto m = calibrated(cell, "camera.pixels_per_sigma"); m && std::isfinite(m->standard_error[0]))
-      scale.error = m->standard_error[0];
-    return scale;
+    return KnownNumber{
+        .value = *cell.pixels_per_sigma, .error = cell.scale_error_px, .from = "the cell's scale"};
   }
   if (!cell.width || !geometry.has_left || !geometry.has_right) return std::nullopt;
   return KnownNumber{.value = geometry.width_px() / *cell.width,

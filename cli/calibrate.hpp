@@ -24,17 +24,21 @@ namespace twincell::cli {
 struct CalibrateFlags {
   std::string stack, cell_file, output, figures;
   double diameter_px = 0;
-  bool bright = false;
+  bool bright = false, dark = false;
 };
-/// Adds the stack, --cell, --diameter and --bright, and what add_output_flags adds.
+/// Adds the stack, --cell, --diameter, --bright and --dark, and what add_output_flags adds.
 void add_stack_flags(CLI::App& verb, Common& common, CalibrateFlags& flags);
 /// Adds -o and --figures.
 void add_output_flags(CLI::App& verb, Common& common, CalibrateFlags& flags);
 
 /// The cell description of --cell, or an empty one without --cell.
 imaging::CellDescription cell_of(const CalibrateFlags& flags);
+/// The same with the polarity of the stack: that of --bright, --dark or a cell with bright beads, otherwise
+/// that of the beads in the first frames, with a note where they are bright.
+imaging::CellDescription filmed_cell(const CalibrateFlags& flags, const Common& common);
 
 /// The geometry of the cell, fitted to the edges in the stack.
+/// \param cell filmed_cell()
 /// \param edges output: the edges, and the bead diameter with which they were read
 calibration::CellGeometry geometry_of(const CalibrateFlags& flags, const imaging::CellDescription& cell,
                                       const Common& common, calibration::StackEdges& edges);

@@ -25,13 +25,14 @@ struct BeadOptions {
 };
 
 void run(const BeadOptions& o, const Common& common) {
-  const imaging::CellDescription cell = cell_of(o.flags);
+  const bool tracked = is_trajectory(o.flags.stack);
+  const imaging::CellDescription cell = tracked ? cell_of(o.flags) : filmed_cell(o.flags, common);
   CalibrationResult out;
   calibration::SizeStatistics c;
   double unit_px = 1;  // px in the unit of length of `c`
   std::optional<double> width = cell.width;
   double width_error = 0;
-  if (is_trajectory(o.flags.stack)) {
+  if (tracked) {
     const H5mdReader trajectory(o.flags.stack);
     c = calibration::count_beads(calibration::beads_of(trajectory, o.frames));
     const TrajectoryInfo& info = trajectory.info();
@@ -39,7 +40,7 @@ void run(const BeadOptions& o, const Common& common) {
     if (info.box.boundary[0] != Boundary::open) width = info.box.size().x();
   } else {
     imaging::LocatorOptions locator;
-    locator.preprocess.bright = o.flags.bright || cell.bright;
+    locator.preprocess.bright = cell.bright;
     locator.diameter_px = o.flags.diameter_px > 0 ? o.flags.diameter_px : cell.pixels_per_sigma.value_or(0);
     const auto frames = open_stack(o.flags.stack, common);
     cv::Mat first;

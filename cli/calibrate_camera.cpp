@@ -102,7 +102,7 @@ std::optional<calibration::SizeStatistics> census_of(const CameraCalibration& o,
                                                      const calibration::CellGeometry& g, const Common& common,
                                                      std::vector<std::string>& notes) {
   imaging::LocatorOptions locator;
-  locator.preprocess.bright = o.flags.bright || cell.bright;
+  locator.preprocess.bright = cell.bright;
   locator.diameter_px = o.flags.diameter_px > 0 ? o.flags.diameter_px : cell.pixels_per_sigma.value_or(0);
   std::optional<imaging::Lens> lens;
   if (g.rotation_deg != 0 || g.distortion != 0) lens = imaging::Lens(g.size, g.rotation_deg, g.distortion);
@@ -274,7 +274,7 @@ void report_edges(CalibrationResult& out, const calibration::CellGeometry& g) {
 }
 
 void run(const CameraCalibration& o, const Common& common) {
-  const imaging::CellDescription cell = cell_of(o.flags);
+  const imaging::CellDescription cell = filmed_cell(o.flags, common);
   CalibrationResult out;
   out.document["stack"] = o.flags.stack;
   calibration::StackEdges edges;

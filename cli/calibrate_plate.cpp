@@ -233,7 +233,7 @@ void compare_with(const calibration::VibrationTable& vibration, CalibrationResul
 }
 
 void run(const PlateOptions& o, const Common& common) {
-  const imaging::CellDescription cell = cell_of(o.flags);
+  const imaging::CellDescription cell = filmed_cell(o.flags, common);
   const std::optional<calibration::VibrationTable> vibration =
       o.accelerometer.empty() ? std::nullopt : std::optional(calibration::read_vibration(o.accelerometer));
   calibration::StackEdges edges;

@@ -49,7 +49,7 @@ void of_trajectory(const CalibrateFlags& flags, const Common& common) {
 }
 
 void of_stack(const CalibrateFlags& flags, const Common& common) {
-  const imaging::CellDescription cell = cell_of(flags);
+  const imaging::CellDescription cell = filmed_cell(flags, common);
   calibration::StackEdges edges;
   const calibration::CellGeometry g = geometry_of(flags, cell, common, edges);
   if (!g.has_left || !g.has_right)
@@ -58,7 +58,7 @@ void of_stack(const CalibrateFlags& flags, const Common& common) {
                                  g.has_left    ? "right"
                                  : g.has_right ? "left"
                                                : "side",
-                                 flags.bright ? "bright" : "dark", flags.bright ? "darkness" : "light"));
+                                 cell.bright ? "bright" : "dark", cell.bright ? "darkness" : "light"));
   const std::string data = data_hash(flags.stack);
   CalibrationResult out;
   const double width = g.width_px(), error = g.width_error_px();

@@ -370,6 +370,26 @@ TEST(Calibrate, TheWrongPolarityGivesNoWalls) {
   }
 }
 
+// The polarity is found as `locate` and `new` find it: without --bright the gaps between the beads would be
+// measured.
+TEST(Calibrate, BrightBeadsAreMeasuredWithoutBeingNamed) {
+  const TemporaryFolder folder;
+  film(folder, {.pixels_per_sigma = 12, .max_height = 9, .bright = true, .seed = 3});
+  const std::string frames = folder / "frames";
+  for (const std::string kind : {"walls", "plate", "beads", "camera"}) {
+    const nlohmann::json named = run_json({"calibrate", kind, frames, "--bright"});
+    const nlohmann::json found = run_json({"calibrate", kind, frames});
+    EXPECT_EQ(found["measured"], named["measured"]) << kind;
+  }
+  const nlohmann::json walls = run_json({"calibrate", "walls", frames})["walls"];
+  EXPECT_NEAR(walls["right"]["x_px"].get<double>() - walls["left"]["x_px"].get<double>(), 144, 0.1);
+  EXPECT_NEAR(run_json({"calibrate", "beads", frames})["measured"]["beads.diameter"]["value"].get<double>(),
+              12, 0.02);
+  // --dark is not questioned.
+  const Ran dark = run_program({"calibrate", "walls", frames, "--dark"});
+  EXPECT_EQ(dark.out.find("144."), std::string::npos) << dark.out;
+}
+
 TEST(Calibrate, BeadsNameAnIntruder) {
   const TemporaryFolder folder;
   for (const bool intruder : {false, true}) {
