@@ -135,6 +135,8 @@ std::string file_hint(const std::vector<std::string>& words, const std::string& 
     const std::string& word = words[i];
     if (word.empty() || word.starts_with('-') || !complaint.starts_with(word + ":")) continue;
     if (std::string advice = advice_on_toml(words[0], word, complaint); !advice.empty()) return advice;
+    if (is_one_of(words[0], kReadCells) && complaint.starts_with(word + ": drive: two of "))
+      return "twincell new STACK -o CELL.toml measures the drive";
     if (!complaint.starts_with(word + ": ")) continue;
     // Complaints about an output say themselves what to name instead.
     for (const char* of_output : {": the output", ": the file exists and", ": the folder is ",

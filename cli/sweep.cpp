@@ -341,7 +341,8 @@ CLI::App& add_stage(CLI::App& verb, Common& common, const Options& options, cons
              return said.empty() ? std::string("The folder of the sweep has no name.") : std::string();
            }),
        nullptr, Product::runs()});
-  if (std::string(name) != "collect") former_option(sub, "-o,--output", "--folder");
+  if (std::string(name) != "collect")
+    former_option(sub, "-o,--output", std::string(name) == "plot" ? "--figures" : "--folder");
   return sub;
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/config.hpp"
+#include "core/escape.hpp"
 #include "core/median.hpp"
 #include "core/output_rules.hpp"
 #include "core/plural.hpp"
@@ -62,11 +63,13 @@ void require_room(const fs::path& folder, int twins) {
         "it, or name a new folder.");
 }
 
-void require_known(const imaging::CellDescription& cell, const fs::path& file) {
+void require_known(const imaging::CellDescription& cell, const fs::path& file, const fs::path& stack) {
   const auto need = [&](bool known, const char* key, const char* why) {
     if (!known)
       throw ConfigError({.file = file.string(), .key = key},
-                        fmt::format("is missing; a twin needs it {}.", why));
+                        fmt::format("is missing; a twin needs it {}, and twincell new {} -o CELL.toml "
+                                    "measures it.",
+                                    why, shell_word(stack.string())));
   };
   need(cell.origin.has_value(), "camera.origin_px", "to place the beads over the plate");
   need(cell.width.has_value(), "cell.width", "to place the side walls");
@@ -143,7 +146,7 @@ double simulate(const sim::Scene& scene, const fs::path& output, const TwinProve
 calibration::FilmedCell read_filmed_cell(const TwinOptions& options, const ProgressOf& progress) {
   const imaging::FrameRange range = imaging::frames_of(options.film.locating);
   calibration::FilmedCell filmed = calibration::stated_cell(options.film, range);
-  require_known(filmed.cell, options.cell_file());
+  require_known(filmed.cell, options.cell_file(), options.stack);
   (void)word_of_sides(filmed.cell, options.cell_file());
   filmed = calibration::check_beads(std::move(filmed), options.open, options.stack, options.film, progress);
   // Phases from the bed or a list need no lock to the drive.

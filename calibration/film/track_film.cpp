@@ -20,6 +20,17 @@ bool checks_drive(const FilmedCell& filmed, const FilmOptions& options) {
   return filmed.measured_drive.empty() && !options.trust_stated_drive && filmed.cell.drive();
 }
 
+/// Refuses an incomplete or contradictory drive before the work starts.
+/// \throws ConfigError naming the cell file, if it is what states the drive
+void check_stated_drive(const imaging::CellDescription& cell, const imaging::TrackRequest& request) {
+  try {
+    (void)cell.drive();
+  } catch (const ConfigError& e) {
+    if (request.cell_file.empty() || request.gamma || request.amplitude) throw;
+    throw ConfigError({.file = request.cell_file}, e.what());
+  }
+}
+
 imaging::LocatorOptions locator_of(const imaging::CellDescription& cell, const FilmOptions& options) {
   return imaging::locator_of(
       options.locating, cell.disc_px(),
@@ -126,7 +137,7 @@ TrackedFilm track_filmed_cell(const OpenFrames& open, FilmedCell filmed, DriveCh
 TrackedFilm track_film(const OpenFrames& open, const std::filesystem::path& film, const FilmOptions& options,
                        const ProgressOf& progress, StageTimes* times) {
   FilmedCell filmed = stated_cell(options, imaging::frames_of(options.locating));
-  (void)filmed.cell.drive();  // refuse a contradictory drive before the work starts
+  check_stated_drive(filmed.cell, options.request);
   filmed = check_beads(std::move(filmed), open, film, options, progress);
   DriveCheck by_plate = check_plate(filmed, film, options, progress, times);
   return track_filmed_cell(open, std::move(filmed), std::move(by_plate), options, progress, times);
@@ -140,7 +151,7 @@ TrackedFilm track_table(const Table& table, imaging::LocatedTableOptions located
   if (!options.locating.diameters.empty()) located.diameter_px = options.locating.diameters.front();
   imaging::LocatedTable beads = imaging::read_located(table, located, options.folder);
   FilmedCell filmed = stated_cell(options, beads.range);
-  (void)filmed.cell.drive();
+  check_stated_drive(filmed.cell, options.request);
   imaging::TrackedStack stack = [&] {
     const auto bar = progress("track");
     const Stage linking(times, "linking", "links");

@@ -76,6 +76,8 @@ def test_next_steps():
     plan = folder / "plan.toml"
     plan.write_text('scene = "scene.toml"\nresults = ["s_b"]\n[axes]\ndrive.gamma = [1.2, 1.4]\n')
     out = folder / "out.h5"
+    minimal = folder / "minimal.toml"
+    minimal.write_text("[drive]\ngamma = 1.5\n")
     for words, code, sentence in (
         (("info", folder / "framse"), 3, f"{folder}/framse: does not exist; did you mean '{folder}/frames'?"),
         (("explain", folder / "scnee.toml"), 3,
@@ -84,6 +86,9 @@ def test_next_steps():
          "~/frames: does not exist; the shell expands ~ only at the beginning of a word and outside of quotes."),
         (("track", frames, "--cell", folder / "CELL.toml", "-o", out), 3,
          f"{folder}/CELL.toml: the file does not exist; twincell new STACK -o {folder}/CELL.toml writes a cell file of this name."),
+        (("track", frames, "--cell", minimal, "-o", out), 2,
+         f"{minimal}: drive: two of amplitude, omega, frequency, gamma, k_m, peak_velocity are needed, only gamma is given; "
+         "twincell new STACK -o CELL.toml measures the drive."),
         (("analyze", scene), 3, f"; twincell simulate {scene} -o scene.h5 makes a trajectory of a scene."),
         (("analyze", frames), 3, f"; twincell track {frames} -o frames.h5 makes a trajectory of a stack of frames."),
         (("explain", plan), 2, "this file looks like a plan of a sweep, which twincell sweep run reads."),

@@ -684,6 +684,9 @@ TEST(Match, SaysWhatTheCellLacksAndLeavesNothing) {
     const Ran ran = run_program({"match", stack, cell, "-o", folder / "twin", "-q"});
     EXPECT_EQ(ran.code, 2) << key;
     EXPECT_NE(ran.err.find(named), std::string::npos) << ran.err;
+    const bool measured =
+        ran.err.find("twincell new " + stack.string() + " -o CELL.toml measures it.") != std::string::npos;
+    EXPECT_EQ(measured, key != "omega") << ran.err;
     EXPECT_FALSE(fs::exists(folder / "twin")) << key;
   }
   EXPECT_EQ(run_program({"match", folder / "no", kStack / "CELL.toml", "-o", folder / "twin", "-q"}).code, 3);

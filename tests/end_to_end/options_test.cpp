@@ -268,6 +268,7 @@ TEST(Options, AFormerOptionIsRefusedWithThePresentOne) {
       {{"sweep", "plan", "plan.toml", "--output", "folder"}, "write --folder."},
       {{"sweep", "status", "plan.toml", "-o", "folder"}, "write --folder."},
       {{"sweep", "template", "slurm", "plan.toml", "-o", "folder"}, "write --folder."},
+      {{"sweep", "plot", "plan.toml", "--result", "q6", "-o", "p.png"}, "write --figures."},
   };
   for (const auto& f : former) {
     const Ran ran = run_program(f.words);
