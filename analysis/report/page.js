@@ -8,6 +8,7 @@
 
   // Okabe and Ito's colours; every colour has a shape or a dash of its own as well.
   const phaseColour = {'co-moving': '#0072B2', bouncing: '#E69F00', convecting: '#D55E00', undetermined: '#9A9A9A'};
+  const onsetColour = {bouncing: '#0072B2', convecting: '#D55E00'};  // as in the figures for print
   const phaseSymbol = {'co-moving': 'circle', bouncing: 'square', convecting: 'triangle-up', undetermined: 'x-thin'};
   // Colours of the theme, from page.css: light, dark, or as the system says.
   const themed = name => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
@@ -60,6 +61,7 @@
   // The regions of the phases as shapes. Between them the phase is not determined: the intervals of the onsets stay blank.
   function regions(x, y) {
     const onsets = shadingOnsets(), bounce = limitsOf(onsets, 'bouncing', y), convect = limitsOf(onsets, 'convecting', y);
+    // Between the data of several heights, and over the whole graph for one.
     const line = (limits, side) => [[x[0], limits[0][side]], ...limits.map(l => [l[0], l[side]]), [x[1], limits[limits.length - 1][side]]];
     const flat = level => [[x[0], level], [x[1], level]];
     const shapes = [];
@@ -100,20 +102,14 @@
     const gap = Math.min(...gaps, Infinity), offset = spread(19 * pixel, 0.45 * gap), aside = Math.min(46 * pixel, 0.36 * gap);
     const low = Math.min(...gammas, ...ends), high = Math.max(...gammas, ...ends), pad = Math.max(0.1, 0.1 * (high - low));
     const y = [Math.max(0, low - pad), high + pad];
-    const traces = [], shaded = regions(x, y);
-    for (const start of new Set(data.sweep.map(p => p.start)))
-      for (const phase of Object.keys(phaseColour)) {
-        const of = data.sweep.filter(p => p.start === start && p.phase === phase);
-        if (of.length) traces.push({x: of.map(p => p.n_l), y: of.map(p => p.gamma), mode: 'markers', name: `sweep ${plain(start)}, ${phase}`,
-          hovertemplate: `sweep, ${plain(start)}: ${phase}<br>Nₗσ %{x:.3g}, Γ %{y:.4g}<extra></extra>`,
-          marker: {size: 6, symbol: phaseSymbol[phase] + (phase === 'undetermined' ? '-open' : ''), color: phaseColour[phase], opacity: 0.55}});
-      }
+    const oneHeight = heights.length < 2 || !gaps.length;
+    const traces = [], shaded = regions(oneHeight ? x : [heights[0], heights[heights.length - 1]], y);
     const onsetOf = {bouncing: 'bouncing', convecting: 'convection'};
     for (const kind of ['bouncing', 'convecting'])
       for (const key of new Set(data.boundaries.filter(b => b.onset === kind).map(b => b.of))) {
         const of = data.boundaries.filter(b => b.onset === kind && b.of === key && (b.gamma !== null || b.below !== null || b.above !== null));
         if (!of.length) continue;
-        const side = of[0].side, colour = sideColour[side], open = side === 'experiment' ? '-open' : '';
+        const side = of[0].side, colour = onsetColour[kind], open = side === 'experiment' ? '-open' : '';
         const shift = (of[0].sweep ? 0 : side === 'experiment' ? -1 : 1) * aside;
         const place = b => b.gamma !== null ? b.gamma : b.below !== null ? b.below : b.above;
         traces.push({x: of.map(b => Math.max(x[0], b.n_l + shift)), y: of.map(place), mode: of.length > 1 ? 'lines+markers' : 'markers', name: `onset of ${onsetOf[kind]}, ${plain(key)}`,
@@ -121,8 +117,17 @@
           hovertemplate: `onset of ${onsetOf[kind]}, ${plain(key)}<br>%{text}<extra></extra>`,
           error_y: {type: 'data', symmetric: false, array: of.map(b => b.gamma !== null ? b.high - b.gamma : 0), arrayminus: of.map(b => b.gamma !== null ? b.gamma - b.low : 0), width: 7, thickness: 1.6, color: colour},
           line: {color: colour, width: 1.4, dash: kind === 'bouncing' ? 'dot' : 'solid'},
-          marker: {size: 11, symbol: of.map(b => b.gamma !== null ? (kind === 'bouncing' ? 'diamond' : 'star') + open : b.below !== null ? 'arrow-up' : 'arrow-down'),
+          marker: {size: 11, symbol: of.map(b => b.gamma !== null ? (kind === 'bouncing' ? 'diamond' : 'pentagon') + open : b.below !== null ? 'arrow-up' : 'arrow-down'),
                    color: colour, line: {width: 1.5, color: colour}}});
+      }
+    // The points of a sweep lie at the N_l of its onsets: over their bars.
+    for (const start of new Set(data.sweep.map(p => p.start)))
+      for (const phase of Object.keys(phaseColour)) {
+        const of = data.sweep.filter(p => p.start === start && p.phase === phase);
+        if (of.length) traces.push({x: of.map(p => p.n_l), y: of.map(p => p.gamma), mode: 'markers', name: `sweep ${plain(start)}, ${phase}`,
+          hovertemplate: `sweep, ${plain(start)}: ${phase}<br>Nₗσ %{x:.3g}, Γ %{y:.4g}<extra></extra>`,
+          marker: {size: data.sweep.length > 200 ? 7 : 11, symbol: phaseSymbol[phase] + (phase === 'undetermined' ? '-open' : ''), color: phaseColour[phase],
+            line: {width: 1, color: themed('ink')}}});
       }
     const chosen = shown();
     traces.push({x: chosen.map(i => runs[i].n_l + offset[i]), y: chosen.map(i => runs[i].gamma), mode: 'markers', name: 'shown', hoverinfo: 'skip',
@@ -157,8 +162,8 @@
       key.append(item);
     };
     for (const phase of Object.keys(glyphs)) if (all.some(r => r.phase === phase)) entry(glyphs[phase], phaseColour[phase], phase);
-    if (data.boundaries.some(b => b.onset === 'bouncing')) entry('◆', sideColour.simulation, 'onset of bouncing');
-    if (data.boundaries.some(b => b.onset === 'convecting')) entry('★', sideColour.simulation, 'onset of convection');
+    if (data.boundaries.some(b => b.onset === 'bouncing')) entry('◆', onsetColour.bouncing, 'onset of bouncing');
+    if (data.boundaries.some(b => b.onset === 'convecting')) entry('⬟', onsetColour.convecting, 'onset of convection');
     $('diagram-words').textContent = (runs.length ? 'Open symbols: experiments. Filled: simulations, which are the twins where they start from the filmed packing; runs at one drive lie side by side. Click one, or use the arrow keys, to show its bed; the ring marks what is shown. ' : '') +
       (data.boundaries.length ? 'Onsets: bar, interval; arrow, the onset lies beyond. ' : '') +
       (shaded.of ? `Shaded: the phases between the onsets of: ${shaded.of}; blank: undecided.` : '');
@@ -206,6 +211,13 @@
   const shown = () => [state.experiment, state.simulation].filter(i => i !== null);
   const at = m => m.cycle === null ? m.step : m.cycle + m.fraction;
 
+  // The last frame of a run at a phase of a cycle that the other one shows too; without one, its last frame.
+  function lastShared(lead, other) {
+    const same = (m, o) => m.cycle !== null && m.cycle === o.cycle && Math.abs(m.fraction - o.fraction) < 1e-9;
+    const shared = other ? lead.moments.findLastIndex(m => other.moments.some(o => same(m, o))) : -1;
+    return Math.max(0, shared >= 0 ? shared : lead.moments.length - 1);
+  }
+
   function show(run) {
     const m = matches.findIndex(x => x.experiments.includes(run) || x.simulations.includes(run));
     const match = matches[m];
@@ -214,7 +226,7 @@
     state.simulation = match.simulations.includes(run) ? run : match.simulations.length ? match.simulations[0] : null;
     state.view = null;
     const lead = runs[state.experiment !== null ? state.experiment : state.simulation];
-    state.moment = Math.max(0, lead.moments.length - 1);
+    state.moment = lastShared(lead, state.experiment !== null && state.simulation !== null ? runs[state.simulation] : null);
     $('moment').max = Math.max(0, lead.moments.length - 1);
     $('moment').value = state.moment;
     $('which').value = String(run);
@@ -227,16 +239,23 @@
     document.body.dataset.run = run;
   }
 
-  // The place of cell coordinates in the picture. A run without a camera borrows the other side's, or gets one.
-  function cameraOf(run) {
-    const other = shown().map(i => runs[i]).find(r => r.camera);
-    if (run.camera) return run.camera;
-    if (other) return other.camera;
+  // The place of cell coordinates in both panels, so that they have one scale: in the picture of the experiment, if it has one.
+  function commonCamera() {
+    const filmed = shown().map(i => runs[i]).find(r => r.camera);
+    if (filmed) return filmed.camera;
     let top = 4;
     for (const i of shown()) for (const m of runs[i].moments) for (const z of m.z) if (z !== null) top = Math.max(top, z / 1000 + 1.5);
-    const width = run.box[1] - run.box[0], s = 20;
+    const box = runs[shown()[0]].box, width = box[1] - box[0], s = 20;
     top = Math.min(top, 3 * width);
-    return {s, ox: s - run.box[0] * s, oy: (top + 0.5) * s, w: Math.round((width + 2) * s), h: Math.round((top + 2.5) * s)};
+    return {s, ox: s - box[0] * s, oy: (top + 0.5) * s, w: Math.round((width + 2) * s), h: Math.round((top + 2.5) * s)};
+  }
+
+  // What both panels show: the common picture, and above it what the beds of both sides need; single beads that fly out of a bed do not count.
+  function field(camera) {
+    const heights = shown().flatMap(i => runs[i].moments.flatMap(m => m.z.filter(z => z !== null))).sort((a, b) => a - b);
+    const top = heights.length ? heights[Math.floor(0.99 * (heights.length - 1))] / 1000 + 0.7 : 0;
+    const row = Math.min(-0.5, camera.oy - camera.s * top);
+    return [-0.5, row, camera.w, camera.h - 0.5 - row];
   }
 
   const scales = {q6: [0.3125, 0.7408], psi6: [0, 1]};
@@ -296,15 +315,19 @@
     const box = $('panel-' + side);
     box.hidden = index === null;
     if (index === null) return;
-    const run = runs[index], svg = box.querySelector('svg'), camera = cameraOf(run);
+    const run = runs[index], svg = box.querySelector('svg'), camera = commonCamera();
     svg.replaceChildren();
     if (!run.moments.length) { box.querySelector('figcaption').textContent = `${run.name}: no frames are kept in this report.`; return; }
     const m = run.moments[nearest(run, when)];
-    const view = state.view || [-0.5, -0.5, camera.w, camera.h];
+    const view = state.view || field(camera);
     svg.setAttribute('viewBox', view.join(' '));
     svg.setAttribute('aria-label', `${side}, ${m.label}`);
     const raw = $('layer-raw').checked && m.picture;
-    if (raw) make('image', {href: m.picture, x: -0.5, y: -0.5, width: camera.w, height: camera.h, preserveAspectRatio: 'none', class: 'raw'}, svg);
+    if (raw) {
+      const own = run.camera || camera, k = camera.s / own.s;
+      make('image', {href: m.picture, x: camera.ox - k * (own.ox + 0.5), y: camera.oy - k * (own.oy + 0.5), width: k * own.w, height: k * own.h,
+        preserveAspectRatio: 'none', class: 'raw'}, svg);
+    }
     const by = $('colour').value;
     if ($('layer-found').checked) {
       const group = make('g', {class: 'found'}, svg);

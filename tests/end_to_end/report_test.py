@@ -131,6 +131,28 @@ def check_opening(browser):
     assert not missing, f"without an alternative text: {missing}"
 
 
+def check_panels(browser):
+    """Both sides of a filmed twin are drawn in one scale, at one phase of one cycle."""
+    widths = browser.value("['experiment', 'simulation'].map(s => document.querySelector(`#panel-${s} .found circle`).getBoundingClientRect().width)")
+    assert abs(widths[0] / widths[1] - 1) < 0.01, f"a bead is {widths} px wide"
+    boxes = browser.value("['experiment', 'simulation'].map(s => document.querySelector(`#panel-${s} svg`).getAttribute('viewBox'))")
+    assert boxes[0] == boxes[1], boxes
+    # The frame of the film is where its beads are: the lowest row stands above the plate of the picture.
+    assert circles(browser, "simulation", "image.raw") == 1, "the film is shown"
+    moments = browser.value("['experiment', 'simulation'].map(s => document.querySelector(`#panel-${s} figcaption`).textContent.match(/cycle [0-9]+, phase [0-9]+/)[0])")
+    assert moments[0] == moments[1], moments
+
+
+def check_print(browser):
+    """The page is not wider than the paper."""
+    browser.call("Emulation.setEmulatedMedia", media="print")
+    browser.value("document.querySelectorAll('details.section').forEach(d => d.open = true)")
+    wide = browser.value("document.documentElement.scrollWidth")
+    assert wide <= 794, f"{wide} px wide on A4"
+    assert "s_b" in browser.value("[...document.querySelectorAll('table[data-name=runs] th')].filter(h => h.getClientRects().length).map(h => h.innerText).join()").replace("sb", "s_b")
+    browser.call("Emulation.setEmulatedMedia", media="screen")
+
+
 def check_sections(browser):
     """Contents lead to their sections, sections fold, the differences are the real ones by default."""
     ids = browser.value("[...document.querySelectorAll('nav a')].map(a => a.getAttribute('href').slice(1))")
@@ -144,6 +166,8 @@ def check_sections(browser):
     real = browser.value("document.querySelectorAll('table[data-name=differences] tr.real').length")
     every = browser.value("document.querySelectorAll('table[data-name=differences] tbody tr').length")
     assert browser.value(rows + ".length") == real < every, "only the real differences are shown"
+    table = browser.value("(t => [t.scrollWidth, t.parentElement.clientWidth])(document.querySelector('table[data-name=differences]'))")
+    assert table[0] <= table[1], f"what differences are made of is in sight: {table}"
     browser.click("document.getElementById('only-real')")
     assert browser.value(rows + ".length") == every, "the switch shows all"
     browser.click("document.getElementById('only-real')")
@@ -179,6 +203,10 @@ def main():
         check_clicks(browser)
         check_overlay(browser)
         check_tables(browser, scratch)
+        browser.open((scratch / "twin/report/report.html").resolve().as_uri(), 1280, 900)
+        check_panels(browser)
+        browser.open(url, 794, 1123)
+        check_print(browser)
         if pictures:
             browser.picture(pictures / "laptop.png")
         browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
