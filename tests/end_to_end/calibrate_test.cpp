@@ -129,6 +129,23 @@ TEST(Calibrate, AStackOfUnknownScaleDriveAndPhaseComesBackAndItsTwinUsesThem) {
   const auto tracking = nlohmann::json::parse(experiment.info().tracking_json);
   EXPECT_EQ(tracking["camera"]["covariance"]["matrix"].size(), 25U);
   EXPECT_NEAR(tracking["camera"]["rotation_deg"].get<double>(), 0.6, 0.1);
+  // The error of the scale goes on into that of the compared lengths.
+  const Measurement scale = *all.find("camera.pixels_per_sigma");
+  EXPECT_NEAR(tracking["camera"]["scale_error_px"].get<double>(), scale.standard_error[0], 1e-12);
+  std::size_t lengths = 0;
+  const auto report = nlohmann::json::parse(read_text_file(folder / "twin/report/results.json"));
+  for (const auto& d : report["differences"]) {
+    if (d["unit"] == "1") {
+      EXPECT_TRUE(d["scale"].is_null()) << d;
+    }
+    if (d["unit"] != "sigma") continue;
+    ++lengths;
+    EXPECT_NEAR(d["scale"].get<double>(),
+                std::abs(d["experiment"]["value"].get<double>()) * scale.standard_error[0] / scale.value[0],
+                1e-9)
+        << d;
+  }
+  EXPECT_GT(lengths, 0U);
   const sim::Scene scene = sim::read_scene(folder / "twin/scene.toml");
   EXPECT_NEAR(scene.contact.wall.at("bottom").required("restitution"),
               all.find("contact.wall.restitution")->value[0], 1e-9);
