@@ -80,8 +80,7 @@ std::unique_ptr<imaging::FrameSource> open_stack(const std::filesystem::path& st
 bool is_trajectory(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return false;
-  h5::quiet();
-  const h5::Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  const h5::Handle opened = h5::open_file(file);
   return opened ? h5::exists(opened.get(), "h5md") : file.extension() == ".h5";
 }
 

@@ -37,6 +37,8 @@ void require_ranges(const TrajectoryInfo& info, const std::string& name) {
   };
   each(info.radius, "radius", kLargestRadius);
   each(info.mass, "mass", 1e300);
+  const double width = info.box.size().x();
+  if (info.box.boundary[0] != Boundary::open && width > 0) each(info.radius, "radius", width);
   for (std::size_t i = 0; i < info.tracer.size(); ++i)
     if (info.tracer[i] > 1)
       refuse("tracer", fmt::format("is {} for bead {}; it must be 0 or 1.", info.tracer[i], i));
@@ -74,6 +76,18 @@ void require_filled_slots(const Frame& frame, std::size_t index, const std::stri
                        frame.present(i)
                            ? fmt::format("slot {} is a bead without a finite position.", i)
                            : fmt::format("slot {} is empty but has a position; it must be NaN.", i));
+}
+
+void require_speeds(const Frame& frame, std::size_t index, const std::string& name) {
+  constexpr double kFastest = 1e8;
+  for (const auto& [word, column] : {std::pair{"velocity", &frame.velocity}, {"spin", &frame.spin}})
+    for (std::size_t i = 0; i < column->size(); ++i)
+      for (const double v : (*column)[i])
+        if (std::abs(v) > kFastest)  // NaN: unknown
+          throw InputError(
+              {name, 0, 0, fmt::format("frame {}", index)},
+              fmt::format("a component of the {} of bead {} is {:g}; it must be within {:g} of 0.", word, i,
+                          v, kFastest));
 }
 
 void require_order(std::span<const std::int32_t> phases, std::span<const std::int64_t> cycles,

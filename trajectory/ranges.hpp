@@ -30,6 +30,10 @@ void require_ranges(const Frame& frame, std::size_t index, const TrajectoryInfo&
 /// \throws InputError naming the frame and the slot
 void require_filled_slots(const Frame& frame, std::size_t index, const std::string& name);
 
+/// Checks that no speed or spin is beyond 1e8 in reduced units. Files of other programs may have other units.
+/// \throws InputError naming the frame and the bead
+void require_speeds(const Frame& frame, std::size_t index, const std::string& name);
+
 /// Checks that three beads or more are not all at one place, as in a file whose positions were lost.
 /// \throws InputError naming the frame
 void require_places(const Frame& frame, std::size_t index, const std::string& name);

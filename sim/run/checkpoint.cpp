@@ -290,7 +290,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) refuse("", "the file does not exist.");
   Checkpoint c;
   try {
-    const h5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+    const h5::Handle file = h5::open_file(path);
     if (!file) refuse("", damaged);
     const auto version = h5::read_int_attribute(file.get(), kVersion);
     if (version.size() != 1) refuse(kVersion, damaged);

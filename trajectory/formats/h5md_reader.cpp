@@ -56,6 +56,9 @@ struct H5mdReader::Impl {
   void read_parameters();
   void read_conditions();
   void check_gamma();
+  void check_layers();
+  void require_box(const std::string& group) const;
+  void require_plate(const std::vector<std::int32_t>& phases, const std::vector<std::int64_t>& cycles) const;
   void require_rising_time(const std::string& particles) const;
 };
 
@@ -107,13 +110,14 @@ bool H5mdReader::Impl::read_number(const std::string& group, const std::string& 
 }
 
 void H5mdReader::Impl::open() {
-  h5::quiet();
   std::error_code ec;
   if (!fs::exists(path, ec)) refuse("", "the file does not exist.");
   if (fs::is_directory(path, ec)) refuse("", "this is a folder; a trajectory file is needed.");
+  if (!fs::is_regular_file(path, ec))
+    refuse("", "this is a device, a pipe or a socket; a regular file is needed.");
   if (::access(path.c_str(), R_OK) != 0)
     refuse("", fmt::format("the file cannot be read ({}).", std::strerror(errno)));
-  file = h5::Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  file = h5::open_file(path);
   if (!file)
     refuse("", H5Fis_hdf5(path.c_str()) > 0 ? "the HDF5 file is truncated or damaged."
                                             : "this is not an HDF5 file, or it is truncated.");
@@ -131,10 +135,14 @@ void H5mdReader::Impl::open() {
                     path.string());
   read_parameters();
   require_ranges(info, path.string());
-  if (!foreign) require_rising_time(group);
-  if (info.columns.phase && !foreign)
-    require_order(h5::read_dataset<std::int32_t>(file.get(), "observables/drive_phase/value"),
-                  h5::read_dataset<std::int64_t>(file.get(), "observables/cycle/value"), path.string());
+  if (foreign) return;
+  require_box(group);
+  require_rising_time(group);
+  if (!info.columns.phase) return;
+  const auto phases = h5::read_dataset<std::int32_t>(file.get(), "observables/drive_phase/value");
+  const auto cycles = h5::read_dataset<std::int64_t>(file.get(), "observables/cycle/value");
+  require_order(phases, cycles, path.string());
+  require_plate(phases, cycles);
 }
 
 void H5mdReader::Impl::open_columns(const std::string& group) {
@@ -299,6 +307,46 @@ void H5mdReader::Impl::read_box(const std::string& group) {
   read_foreign_box(group);
 }
 
+/// The box of H5MD, from which other programs read the cell, must be that of twincell/cell.
+void H5mdReader::Impl::require_box(const std::string& group) const {
+  constexpr double kRounding = 1e-9;
+  const std::string where = group + "/box";
+  if (!h5::exists(file.get(), where)) refuse(where, "the group is missing.");
+  if (!h5::exists(file.get(), where + "/edges/value")) return;
+  const h5::Series series(file.get(), where + "/edges/value");
+  if (series.record() != std::vector<hsize_t>{3, 3})
+    refuse(where + "/edges", "an array [3][3] per frame is needed.");
+  const auto edges = h5::read_dataset<double>(file.get(), where + "/edges/value");
+  const Vec3 size = info.box.size();
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    const auto row = static_cast<int>(k % 9 / 3), column = static_cast<int>(k % 3);
+    const double cell = row == column ? size[row] : 0;
+    if (!(std::abs(edges[k] - cell) <= kRounding * std::max(1.0, cell)))
+      refuse(where + "/edges",
+             fmt::format("edge [{}][{}] of frame {} is {:g}, but that of twincell/cell is {:g}.", row, column,
+                         k / 9, edges[k], cell));
+  }
+}
+
+/// The plate of a simulation is where its drive puts it in each phase, or at 0 while it rests.
+void H5mdReader::Impl::require_plate(const std::vector<std::int32_t>& phases,
+                                     const std::vector<std::int64_t>& cycles) const {
+  constexpr double kRounding = 1e-6;
+  if (info.source != "simulation" || !info.drive || info.drive->ramp || info.drive->recorded ||
+      info.phases_per_cycle <= 0 || !plate_height)
+    return;
+  const auto heights = h5::read_dataset<double>(file.get(), "observables/plate_height/value");
+  for (std::size_t f = 0; f < heights.size(); ++f) {
+    if (phases[f] < 0 || std::isnan(heights[f]) || heights[f] == 0) continue;
+    const double driven =
+        info.drive->displacement(static_cast<double>(phases[f]) / info.phases_per_cycle, cycles[f]);
+    if (!(std::abs(heights[f] - driven) <= kRounding * std::max(1.0, info.drive->amplitude)))
+      refuse(fmt::format("frame {}", f),
+             fmt::format("the plate is at {:g}, but the drive of the file puts it at {:g}.", heights[f],
+                         driven));
+  }
+}
+
 /// A file of another program has only the H5MD box. Its corner is at the origin.
 void H5mdReader::Impl::read_foreign_box(const std::string& group) {
   info.box.dimension = is_planar() ? 2 : 3;
@@ -353,9 +401,10 @@ void H5mdReader::Impl::read_parameters() {
     if (H5Iget_type(group.get()) != H5I_GROUP)
       refuse("parameters/drive", "must be a group with the numbers amplitude and omega.");
     Drive drive;
-    const auto axis = h5::read_text_attribute(group.get(), "axis");
-    if (!axis.empty() && !axis.front().empty()) {
-      const auto k = axis.front().size() == 1 ? std::string("xyz").find(axis.front()) : std::string::npos;
+    if (H5Aexists(group.get(), "axis") > 0) {
+      const auto axis = h5::read_text_attribute(group.get(), "axis");  // empty if it is no text
+      const auto k = axis.size() == 1 && axis.front().size() == 1 ? std::string("xyz").find(axis.front())
+                                                                  : std::string::npos;
       if (k == std::string::npos) refuse("parameters/drive@axis", "must be x, y or z.");
       drive.axis = static_cast<Axis>(k);
     }
@@ -391,8 +440,13 @@ void H5mdReader::Impl::read_parameters() {
       info.phases_per_cycle = std::max(info.phases_per_cycle, std::min(k, 2'000'000'000) + 1);
     }
   }
-  if (read_number("parameters", "samples_per_cycle", value))
-    info.samples_per_cycle = value >= 0 && value <= 2e9 ? static_cast<int>(value) : 0;
+  if (read_number("parameters", "samples_per_cycle", value)) {
+    constexpr double kMostSamples = 2e9;
+    if (!(value >= 0 && value <= kMostSamples && value == std::floor(value)))
+      refuse("parameters/samples_per_cycle",
+             fmt::format("is {:g}; it must be a whole number between 0 and {:g}.", value, kMostSamples));
+    info.samples_per_cycle = static_cast<int>(value);
+  }
   auto scale = [&](const char* name, std::optional<double>& out) {
     if (read_number("parameters/scale", name, value)) out = value;
   };
@@ -421,6 +475,7 @@ void H5mdReader::Impl::read_conditions() {
   number("n_l", info.conditions.n_l);
   number("gamma", info.conditions.gamma);
   check_gamma();
+  check_layers();
   h5::read_text(group.get(), "start", info.conditions.start);
 }
 
@@ -438,6 +493,17 @@ void H5mdReader::Impl::check_gamma() {
   if (sine)
     refuse("twincell/conditions/gamma",
            fmt::format("is {:g}, but parameters/drive states Gamma = {:g}.", stated, of_drive));
+}
+
+void H5mdReader::Impl::check_layers() {
+  constexpr double kRounding = 1e-9;
+  const double width = info.box.size().x();
+  if (info.source != "simulation" || !info.conditions.n_l || !(width > 0)) return;
+  const double stated = *info.conditions.n_l, of_beads = static_cast<double>(info.n_beads) / width;
+  if (std::abs(stated - of_beads) > kRounding * std::max(1.0, of_beads))
+    refuse("twincell/conditions/n_l",
+           fmt::format("is {:g}, but {} beads in a cell {:g} wide are {:g} layers.", stated, info.n_beads,
+                       width, of_beads));
 }
 
 /// Refuses frames whose steps do not rise, or whose times fall.
@@ -521,7 +587,10 @@ void H5mdReader::read(std::size_t index, Frame& frame) const {
     }
     if (r.foreign) r.foreign->restore(index, frame);
     require_ranges(frame, index, r.info, r.path.string());
-    if (!r.foreign) require_filled_slots(frame, index, r.path.string());
+    if (!r.foreign) {
+      require_filled_slots(frame, index, r.path.string());
+      require_speeds(frame, index, r.path.string());
+    }
     require_places(frame, index, r.path.string());
   } catch (const RunError& e) {
     r.refuse(fmt::format("frame {}", index), e.what());

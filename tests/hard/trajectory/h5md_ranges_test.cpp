@@ -2,6 +2,7 @@
 // refuses them and names file and dataset.
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -147,6 +148,28 @@ TEST(H5mdRanges, AnUnknownAxisIsNoIndex) {
     h5::write_attribute(drive, "axis", std::string("q"));
   });
   expect_refused(file, "axis");
+  spoil(file, "parameters/drive", [](hid_t drive) {
+    ASSERT_GE(H5Adelete(drive, "axis"), 0);
+    h5::write_attribute(drive, "axis", 7);
+  });
+  expect_refused(file, "parameters/drive@axis: must be x, y or z");
+}
+
+// Opening a pipe without a writer never returns.
+TEST(H5mdRanges, APipeIsNotOpened) {
+  const TemporaryFolder folder;
+  const std::string pipe = folder / "pipe", file = folder / "t.h5";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  write(file, sound());
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"validate", pipe},
+                                             {"analyze", pipe},
+                                             {"draw", pipe, "-o", folder / "a.png"},
+                                             {"analyze", file, "--rest-height", pipe}}) {
+    const Ran ran = run_program(words);
+    EXPECT_EQ(ran.code, 3) << words[0];
+    EXPECT_NE(ran.err.find("a pipe or a socket; a regular file is needed"), std::string::npos) << ran.err;
+  }
 }
 
 TEST(H5mdRanges, AFileThatMayNotBeReadIsNoDamagedOne) {
@@ -369,12 +392,91 @@ TEST(H5mdRanges, AChangedDriveIsFoundByThePlate) {
     frame.plate_height = 1;  // A sin(pi/2)
     writer.append(frame);
     writer.finish();
-    const Ran ran = run_program({"validate", file});
-    EXPECT_EQ(ran.code, stated == 1 ? 0 : 3);
-    EXPECT_EQ((ran.err + ran.out).find("the plate is at 1, but the drive of the file puts it at 2") !=
-                  std::string::npos,
-              stated == 2)
-        << ran.err << ran.out;
+    if (stated == 2) {
+      expect_refused(file, "frame 0: the plate is at 1, but the drive of the file puts it at 2");
+      continue;
+    }
+    for (const char* verb : {"validate", "analyze"}) EXPECT_EQ(run_program({verb, file}).code, 0) << verb;
+  }
+}
+
+// The phases belong to a number of phases in each cycle.
+TEST(H5mdRanges, AnotherNumberOfPhasesIsFoundByThePlate) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "t.h5";
+  TrajectoryInfo info = sound();
+  info.columns.plate_height = true;
+  info.phases_per_cycle = 40;
+  H5mdWriter writer(file, info);
+  Frame frame;
+  frame.position = {Vec3(1, 0, 1), Vec3(3, 0, 1)};
+  frame.phase = 5;
+  frame.cycle = 0;
+  frame.plate_height = 1;  // of 20 phases per cycle
+  writer.append(frame);
+  writer.finish();
+  expect_refused(file, "the plate is at 1, but the drive of the file puts it at 0.70");
+}
+
+TEST(H5mdRanges, TheBoxIsThatOfTheCell) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "t.h5", box = "particles/trajectory/box";
+  spoil(file, "particles/trajectory",
+        [](hid_t group) { ASSERT_GE(H5Ldelete(group, "box", H5P_DEFAULT), 0); });
+  expect_refused(file, box + ": the group is missing");
+  for (const double edge : {std::nan(""), 1e9, -1.0, 5.0}) {
+    spoil(file, box + "/edges", [&](hid_t edges) {
+      const h5::Handle value = h5::own(H5Dopen2(edges, "value", H5P_DEFAULT), "opening the edges");
+      const double all[] = {10, 0, 0, 0, 1, 0, 0, 0, edge};
+      ASSERT_GE(H5Dwrite(value.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, all), 0);
+    });
+    expect_refused(file, box + "/edges: edge [2][2] of frame 0 is ");
+  }
+}
+
+TEST(H5mdRanges, NumbersOfARunAreThoseOfItsBeads) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "t.h5";
+  TrajectoryInfo info = sound();
+  info.box.boundary[0] = Boundary::wall;
+  info.conditions.n_l = 0.2;
+  write(file, info);
+  EXPECT_EQ(run_program({"validate", file}).code, 0);
+  info.conditions.n_l = 99;
+  write(file, info);
+  expect_refused(file, "twincell/conditions/n_l: is 99, but 2 beads in a cell 10 wide are 0.2 layers");
+  info.conditions.n_l.reset();
+  info.radius[0] = 10.1;
+  write(file, info);
+  expect_refused(file, "radius: 10.1 of bead 0 is out of range; it must be above 0 and at most 10");
+  spoil(file, "parameters", [](hid_t parameters) { h5::write_scalar(parameters, "samples_per_cycle", -5); });
+  expect_refused(file, "parameters/samples_per_cycle: is -5; it must be a whole number between 0 and");
+}
+
+TEST(H5mdRanges, SpeedsBeyondAnyBedAreRefused) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "t.h5";
+  for (const bool spins : {false, true}) {
+    TrajectoryInfo info = sound();
+    (spins ? info.columns.spin : info.columns.velocity) = true;
+    for (const double speed : {1e8, 1e9, HUGE_VAL}) {
+      H5mdWriter writer(file, info);
+      Frame frame;
+      frame.position = {Vec3(1, 0, 1), Vec3(3, 0, 1)};
+      std::vector<Vec3>& column = spins ? frame.spin : frame.velocity;
+      column.assign(2, Vec3::Constant(std::nan("")));
+      column[1].y() = speed;
+      frame.phase = 0;
+      frame.cycle = 0;
+      writer.append(frame);
+      writer.finish();
+      const Ran ran = run_program({"validate", file});
+      EXPECT_EQ(ran.code, speed > 1e8 ? 3 : 0) << ran.out << ran.err;
+      EXPECT_EQ(
+          (ran.out + ran.err).find(spins ? "of the spin of bead 1 is" : "of the velocity of bead 1 is") !=
+              std::string::npos,
+          speed > 1e8);
+    }
   }
 }
 
