@@ -44,8 +44,10 @@ constexpr AddKind kKinds[] = {
 };
 
 /// Calibrations of several kinds write their figures into one folder.
-Product calibration_figures() {
-  return Product::shared_folder("the figures of a calibration");
+///
+/// \param certain files that are certainly written
+Product calibration_figures(std::vector<std::string> certain = {}) {
+  return Product::shared_folder("the figures of a calibration", std::move(certain));
 }
 
 Product calibration_product() {
@@ -107,17 +109,17 @@ std::string data_hash(const std::string& stack) {
   return "sha256:" + sha256_of(imaging::file_of_stack(stack));
 }
 
-void add_output_flags(CLI::App& verb, Common& common, CalibrateFlags& flags) {
+void add_output_flags(CLI::App& verb, Common& common, CalibrateFlags& flags, const std::string& figure) {
   writes(common, verb,
          verb.add_option("-o,--output", flags.output,
                          "Calibration file to write (TOML), which a scene or CELL.toml can include; "
                          "quantities of other runs are kept in it"),
          calibration_product());
   writes(common, verb, verb.add_option("--figures", flags.figures, "Folder for the figures and their data"),
-         calibration_figures());
+         calibration_figures(analysis::figure_files(figure)));
 }
 
-void add_stack_flags(CLI::App& verb, Common& common, CalibrateFlags& flags) {
+void add_stack_flags(CLI::App& verb, Common& common, CalibrateFlags& flags, const std::string& figure) {
   verb.add_option("stack", flags.stack,
                   "Stack: folder of pictures, TIFF, camera file, HDF5 stack or video (docs/frames.md)")
       ->required();
@@ -132,7 +134,7 @@ void add_stack_flags(CLI::App& verb, Common& common, CalibrateFlags& flags) {
                 "Beads, walls and plate are darker than the background; default: as CELL.toml states if they "
                 "are bright there, otherwise determined from the first frames")
       ->excludes(bright);
-  add_output_flags(verb, common, flags);
+  add_output_flags(verb, common, flags, figure);
 }
 
 imaging::CellDescription cell_of(const CalibrateFlags& flags) {

@@ -27,9 +27,11 @@ struct CalibrateFlags {
   bool bright = false, dark = false;
 };
 /// Adds the stack, --cell, --diameter, --bright and --dark, and what add_output_flags adds.
-void add_stack_flags(CLI::App& verb, Common& common, CalibrateFlags& flags);
+void add_stack_flags(CLI::App& verb, Common& common, CalibrateFlags& flags, const std::string& figure);
 /// Adds -o and --figures.
-void add_output_flags(CLI::App& verb, Common& common, CalibrateFlags& flags);
+///
+/// \param figure name of the figure that the kind certainly draws
+void add_output_flags(CLI::App& verb, Common& common, CalibrateFlags& flags, const std::string& figure);
 
 /// The cell description of --cell, or an empty one without --cell.
 imaging::CellDescription cell_of(const CalibrateFlags& flags);

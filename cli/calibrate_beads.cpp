@@ -104,7 +104,7 @@ void add_calibrate_beads(CLI::App& calibrate, Common& common) {
                "Measure the bead diameter, the spread of the sizes, the mean mass by volume, and the "
                "effective number of layers. Prints them; -o also writes them to a calibration file.",
                "twincell calibrate beads frames/ --cell CELL.toml -o cell.calibration.toml");
-  add_stack_flags(verb, common, o->flags);
+  add_stack_flags(verb, common, o->flags, "beads");
   verb.add_option("--frames", o->frames, "Number of frames that are evaluated, spread over the stack")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();

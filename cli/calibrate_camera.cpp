@@ -301,7 +301,7 @@ void add_calibrate_camera(CLI::App& calibrate, Common& common) {
                             "Measure scale, origin, rotation and distortion of the picture from the edges of "
                             "the cell and the beads. Prints them; -o also writes them to a calibration file.",
                             "twincell calibrate camera frames/ --cell CELL.toml -o cell.calibration.toml");
-  add_stack_flags(verb, common, o->flags);
+  add_stack_flags(verb, common, o->flags, "edges");
   verb.add_option("--frames", o->frames, "Number of frames in which beads are located, spread over the stack")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();

@@ -325,7 +325,7 @@ void add_calibrate_contacts(CLI::App& calibrate, Common& common) {
     former_option(kind, "--omega", "--drive-omega");
     former_option(kind, "--phase", "--drive-phase");
     kind.add_option("--drive-phase", o->phase, "Phase of the plate at time 0, rad; default: 0");
-    add_output_flags(kind, common, o->out);
+    add_output_flags(kind, common, o->out, "bounce");
     kind.callback([o, &common] { run_bounce(*o, common); });
   }
   {
@@ -346,7 +346,7 @@ void add_calibrate_contacts(CLI::App& calibrate, Common& common) {
     kind.add_option("--shape", o->shape,
                     "Shape of the beads, which sets their moment of inertia: disc (default) or sphere")
         ->check(CLI::IsMember({"disc", "sphere"}));
-    add_output_flags(kind, common, o->out);
+    add_output_flags(kind, common, o->out, "collisions");
     kind.callback([o, &common] { run_collisions(*o, common); });
   }
   add_calibrate_infer(verb, common);

@@ -516,7 +516,7 @@ void add_calibrate_infer(CLI::App& contacts, Common& common) {
   kind.add_option("--set", o->assignments,
                   "Set a key of the scene, as section.key=value; overrides the file; may be repeated")
       ->take_all();
-  add_output_flags(kind, common, o->out);
+  add_output_flags(kind, common, o->out, "profile");
   kind.callback([o, &common] { run_infer(*o, common); });
 }
 

@@ -272,7 +272,7 @@ void add_calibrate_plate(CLI::App& calibrate, Common& common) {
                             "Measure the drive and the phase of each frame from the edge of the plate. "
                             "Prints them; -o also writes them to a calibration file.",
                             "twincell calibrate plate frames/ --cell CELL.toml -o cell.calibration.toml");
-  add_stack_flags(verb, common, o->flags);
+  add_stack_flags(verb, common, o->flags, "plate");
   verb.add_option("--frames-per-cycle", o->frames_per_cycle,
                   "Frames per drive cycle at which the search for the period starts; default: the value in "
                   "CELL.toml, otherwise searched for")

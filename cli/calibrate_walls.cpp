@@ -123,7 +123,7 @@ void add_calibrate_walls(CLI::App& calibrate, Common& common) {
                             "Measure the width of the cell and the tilts of the side walls. Prints them; -o "
                             "also writes them to a calibration file.",
                             "twincell calibrate walls frames/ --cell CELL.toml -o cell.calibration.toml");
-  add_stack_flags(verb, common, *flags);
+  add_stack_flags(verb, common, *flags, "edges");
   verb.callback([flags, &common] {
     if (is_trajectory(flags->stack))
       of_trajectory(*flags, common);

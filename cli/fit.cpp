@@ -25,7 +25,9 @@ struct FitOptions {
 };
 
 Product fit_folder() {
-  return Product::whole_folder("a fit");
+  std::vector<std::string> files = analysis::figure_files("fit");
+  files.emplace_back("fit.json");
+  return Product::whole_folder("a fit", std::move(files));
 }
 
 std::string text_of(const calibration::CurveFit& fit) {

@@ -204,7 +204,7 @@ void add_file_options(CLI::App& verb, Common& common, ImportOptions& o) {
   verb.add_flag("--y-up", l.y_up, "y of a table increases upwards; default: downwards, as in a picture");
   writes(common, verb,
          verb.add_option("-o,--output", o.output, "Trajectory file to write (H5MD)")->required(),
-         Product::trajectory());
+         Product::imported_trajectory());
   verb.add_option(
           "--source", l.source,
           "Where the beads come from: simulation, experiment or unknown. The beads of an experiment are "

@@ -74,8 +74,7 @@ constexpr int kBarWidth = 30;
 void refuse_other_format(const std::filesystem::path& name, const Product& product) {
   constexpr std::array kOthers = {".csv", ".xyz", ".json", ".toml", ".png", ".tif", ".mp4", ".avi", ".mat"};
   const std::string extension = name.extension().string();
-  if (product.sign == Product::Sign::h5md_creator &&
-      std::find(kOthers.begin(), kOthers.end(), extension) != kOthers.end())
+  if (product.is_trajectory() && std::find(kOthers.begin(), kOthers.end(), extension) != kOthers.end())
     throw ConfigError(
         {.file = name.string(), .key = {}},
         fmt::format("the output is a trajectory (HDF5) and cannot end in {}; name a .h5 file, from "

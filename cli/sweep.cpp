@@ -154,7 +154,7 @@ void run_plan(const SweepOptions& options, const Common& common) {
 }
 
 Product figures_folder() {
-  return Product::shared_folder("the figures of a sweep");
+  return Product::shared_folder("the figures of a sweep", analysis::figure_files("sweep"));
 }
 
 /// Draws a result into `folder`. \returns the path of the SVG

@@ -188,7 +188,7 @@ fs::path AtomicPath::commit_as(const fs::path& other_name, const Product& produc
 }
 
 void AtomicPath::give_way(const fs::path& target, const std::string& obstacle) {
-  fail_and_keep(target, obstacle + " appeared or changed during the run and is not replaced");
+  fail_and_keep(target, obstacle + " and is not replaced");
 }
 
 void AtomicPath::fail_and_keep(const fs::path& target, const std::string& why) {
@@ -215,7 +215,7 @@ void AtomicPath::place_file(const fs::path& target) {
   std::error_code ec;
   if (fs::exists(fs::symlink_status(target, ec)) &&
       (!fs::is_regular_file(target, ec) || !may_replace(target, product_)))
-    give_way(target, "a file of that name");
+    give_way(target, "a file of that name appeared or changed during the run");
   keep_rights(target, part_);
   fs::rename(part_, target, ec);
   if (ec) fail_and_keep(target, "the output cannot take this name (" + ec.message() + ")");
@@ -248,7 +248,7 @@ void AtomicPath::place_folder(const fs::path& target) {
     fs::rename(part_, target, ec);
     if (ec == std::errc::directory_not_empty || ec == std::errc::file_exists ||
         ec == std::errc::not_a_directory)
-      give_way(target, "a folder or file of that name");
+      give_way(target, "a folder or file of that name appeared during the run");
     if (ec) fail_and_keep(target, "the output cannot take this name (" + ec.message() + ")");
     return;
   }
@@ -262,7 +262,8 @@ void AtomicPath::place_folder(const fs::path& target) {
     }
   }
   for (const auto& [name, hashes] : fresh.files)
-    if (!replaceable(target, *old, name)) give_way(target, "'" + name + "' in it");
+    if (!replaceable(target, *old, name))
+      give_way(target, "'" + name + "' in it was not written by twincell, or has changed since,");
   // Otherwise replace file by file. At every instant the manifest lists each file of ours, old or new.
   Manifest both = *old;
   for (const auto& [name, hashes] : fresh.files) both.files[name].insert(hashes.begin(), hashes.end());

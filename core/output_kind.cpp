@@ -23,13 +23,10 @@ std::string head_of(const std::filesystem::path& file, std::size_t bytes) {
 /// Whether the file opens as HDF5 and satisfies `says`.
 template <class Says>
 bool hdf5_says(const std::filesystem::path& file, Says says) {
-  h5::quiet();
   if (head_of(file, 8) != "\x89HDF\r\n\x1a\n") return false;
   try {
-    const hid_t id = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-    if (id < 0) return false;
-    const h5::Handle handle = h5::own(id, "opening");
-    return says(handle.get());
+    const h5::Handle handle = h5::open_file(file);
+    return handle && says(handle.get());
   } catch (const std::exception&) {
     return false;
   }
@@ -48,6 +45,17 @@ bool is_of_failed_run(hid_t file) {
   if (H5Lexists(file, "twincell", H5P_DEFAULT) <= 0) return false;
   const h5::Handle ours = h5::own(H5Oopen(file, "twincell", H5P_DEFAULT), "twincell");
   return H5Aexists(ours.get(), "failed") > 0;
+}
+
+/// Whether a trajectory is of beads that another program located or simulated. Those of `simulate` state
+/// their scene, those of `track` how the beads were tracked.
+bool is_imported(hid_t file) {
+  std::string text;
+  if (h5::exists(file, "twincell/tracking") || !h5::exists(file, "parameters/provenance") ||
+      !h5::read_text(file, "parameters/provenance", text))
+    return false;
+  const auto provenance = nlohmann::json::parse(text, nullptr, false);
+  return provenance.is_object() && !provenance.contains("config");
 }
 
 /// Whether a trajectory states this source, or none. \param source empty: any
@@ -81,6 +89,8 @@ bool is_product(const std::filesystem::path& file, const Product& product) {
     case Product::Sign::h5md_creator:
       return hdf5_says(file,
                        [&](hid_t id) { return made_by_twincell(id) && is_of_source(id, product.mark); });
+    case Product::Sign::imported:
+      return hdf5_says(file, [](hid_t id) { return made_by_twincell(id) && is_imported(id); });
     case Product::Sign::failed_run:
       return hdf5_says(file, [](hid_t id) { return made_by_twincell(id) && is_of_failed_run(id); });
     case Product::Sign::results_group:

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace twincell {
 
@@ -15,6 +16,7 @@ struct Product {
   enum class Sign {
     none,             ///< it is not: an existing file never counts as a product
     h5md_creator,     ///< HDF5, /h5md/creator@name = "twincell"; /twincell@source = `mark` if both are stated
+    imported,         ///< as h5md_creator, and neither from a scene nor from frames
     failed_run,       ///< as h5md_creator, and /twincell@failed
     results_group,    ///< HDF5 with /results and /provenance
     checkpoint,       ///< HDF5 with the root attribute "sha256"
@@ -32,7 +34,11 @@ struct Product {
   bool folder = false;
   /// For a folder: several runs write into it, and the files of earlier runs stay.
   bool shared = false;
+  /// For a folder: names of files that are certainly written. Others of these names are refused before the
+  /// work.
+  std::vector<std::string> files = {};
 
+  [[nodiscard]] bool is_trajectory() const { return sign == Sign::h5md_creator || sign == Sign::imported; }
   /// Whether the product is a single text file, which can go to standard output.
   [[nodiscard]] bool is_text() const {
     return !folder && (sign == Sign::first_line || sign == Sign::beginning || sign == Sign::json_member);
@@ -40,6 +46,10 @@ struct Product {
 
   /// \param source "simulation" or "experiment": one never replaces the other; empty: of any source
   static Product trajectory(const std::string& source = {});
+  /// A trajectory of another program; it does not replace one of `simulate` or `track`.
+  static Product imported_trajectory() {
+    return {.name = "an imported trajectory", .sign = Sign::imported, .mark = {}};
+  }
   /// The frames of a run that failed; no other trajectory counts as one.
   static Product failed_run() {
     return {.name = "the frames of a failed run", .sign = Sign::failed_run, .mark = {}};
@@ -65,12 +75,18 @@ struct Product {
   /// The folder of a sweep or a reproduction: many runs, written by any number of processes.
   static Product runs() { return shared_folder("a folder of runs"); }
   /// A folder that one run writes as a whole.
-  static Product whole_folder(std::string name) {
-    return {.name = std::move(name), .sign = Sign::none, .mark = {}, .folder = true};
+  static Product whole_folder(std::string name, std::vector<std::string> files = {}) {
+    return {
+        .name = std::move(name), .sign = Sign::none, .mark = {}, .folder = true, .files = std::move(files)};
   }
   /// A folder into which several runs write.
-  static Product shared_folder(std::string name) {
-    return {.name = std::move(name), .sign = Sign::none, .mark = {}, .folder = true, .shared = true};
+  static Product shared_folder(std::string name, std::vector<std::string> files = {}) {
+    return {.name = std::move(name),
+            .sign = Sign::none,
+            .mark = {},
+            .folder = true,
+            .shared = true,
+            .files = std::move(files)};
   }
 };
 

@@ -121,8 +121,7 @@ void require_unprotected(const fs::path& final, const Product& product, const Wh
     throw ConfigError(where, fmt::format("the file is write-protected; choose another name, or change its "
                                          "permissions{}.",
                                          or_by_force()));
-  const bool is_data = product.sign == Product::Sign::h5md_creator ||
-                       product.sign == Product::Sign::failed_run ||
+  const bool is_data = product.is_trajectory() || product.sign == Product::Sign::failed_run ||
                        product.sign == Product::Sign::results_group;
   if (!is_data) return;
   const auto manifest = Manifest::read(final.parent_path());
@@ -184,6 +183,18 @@ void require_unchanged(const fs::path& folder, const Manifest& manifest, const W
                                     name));
 }
 
+/// Refuses files of others that have the names of those that the product will write.
+void require_names_free(const fs::path& folder, const Manifest& manifest, const Product& product,
+                        const Where& where) {
+  std::error_code ec;
+  for (const std::string& name : product.files)
+    if (fs::exists(fs::symlink_status(folder / name, ec)) && !manifest.unchanged(folder, name))
+      throw ConfigError(where, fmt::format("'{}' in it {}; move it, or name a new folder.", name,
+                                           manifest.files.contains(name)
+                                               ? "has changed since twincell wrote it"
+                                               : "was not written by twincell and would be replaced"));
+}
+
 void require_folder(const fs::path& final, const Product& product, const Where& where) {
   std::error_code ec;
   if (!fs::exists(final, ec)) return;
@@ -217,6 +228,7 @@ void require_folder(const fs::path& final, const Product& product, const Where& 
     throw ConfigError(where, fmt::format("the folder is {}, and the output is {}; name a new folder.",
                                          manifest->product, product.name));
   if (!product.shared) require_unchanged(final, *manifest, where);
+  require_names_free(final, *manifest, product, where);
 }
 
 }  // namespace

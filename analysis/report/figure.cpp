@@ -72,6 +72,12 @@ void require_whole(const std::filesystem::path& picture, const std::string& last
 
 }  // namespace
 
+std::vector<std::string> figure_files(const std::string& name) {
+  std::vector<std::string> files;
+  for (const char* ending : {".dat", ".gp", ".svg", ".pdf", ".png"}) files.push_back(name + ending);
+  return files;
+}
+
 void draw(const Figure& figure, const std::filesystem::path& folder) {
   if (!is_figure_name(figure.name))
     throw RunError(

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace twincell::analysis {
 
@@ -20,6 +21,9 @@ struct Figure {
   /// The SVG drawing, if that of gnuplot would be too large; empty: gnuplot draws it.
   std::string svg = {};
 };
+
+/// Names of the files that draw() writes for a figure of this name.
+std::vector<std::string> figure_files(const std::string& name);
 
 /// Writes NAME.gp and NAME.dat into `folder` and draws NAME.svg, NAME.pdf and NAME.png.
 /// \throws RunError if gnuplot is missing or fails, with the message of gnuplot

@@ -24,7 +24,8 @@ std::string comparison_json(const Comparison& comparison);
 
 /// The kind of output to which a report folder belongs.
 inline Product report_folder() {
-  return Product::whole_folder("a report");
+  return Product::whole_folder("a report", {"runs.csv", "differences.csv", "series_s_k.csv", "series_s_j.csv",
+                                            "phases.txt", "results.json", "provenance.json", "report.html"});
 }
 
 /// Writes `folder`, which appears only when it is complete: report.html (one file without external requests),

@@ -436,6 +436,58 @@ TEST(Outputs, AFolderIsReplacedAsFarAsItsManifestGoes) {
   EXPECT_TRUE(fs::exists("notes.txt"));
 }
 
+// The names that a run certainly writes are checked before its work.
+TEST(Outputs, AFileInTheWayOfAFolderIsRefusedAtOnce) {
+  const Sandbox sandbox;
+  const std::vector<std::string> fit = {"fit", "table.csv", "--law", "line", "-o", "fit", "-q"};
+  ASSERT_EQ(run_program(fit).code, 0);
+  EXPECT_EQ(run_program(fit).code, 0);
+  auto manifest = nlohmann::json::parse(std::ifstream("fit/twincell-manifest.json"));
+  manifest["files"].erase("fit.dat");
+  write("fit/twincell-manifest.json", manifest.dump());
+  const Ran unlisted = run_program(fit);
+  EXPECT_EQ(unlisted.code, 2);
+  EXPECT_NE(unlisted.err.find("'fit.dat' in it was not written by twincell"), std::string::npos)
+      << unlisted.err;
+
+  // Figures of several kinds of calibration share a folder: only the own ones count.
+  const auto calibrate = [](const std::string& kind) {
+    return run_program(
+        {"calibrate", kind, "frames", "--cell", "frames/CELL.toml", "--figures", "figures", "-q"});
+  };
+  ASSERT_EQ(calibrate("beads").code, 0);
+  write("figures/beads.svg", "changed by hand");
+  write("figures/edges.pdf", "mine");
+  EXPECT_EQ(calibrate("plate").code, 0);
+  for (const auto& [kind, said] :
+       {std::pair<std::string, std::string>{"beads", "'beads.svg' in it has changed since twincell wrote it"},
+        {"walls", "'edges.pdf' in it was not written by twincell"}}) {
+    const Ran refused = calibrate(kind);
+    EXPECT_EQ(refused.code, 2) << kind;
+    EXPECT_NE(refused.err.find(said), std::string::npos) << refused.err;
+  }
+}
+
+TEST(Outputs, AnImportReplacesImportsAlone) {
+  const Sandbox sandbox;
+  write("beads.csv", "frame,particle,x,y\n0,0,1,1\n0,1,3,1\n1,0,1,2\n1,1,3,2\n");
+  const auto import = [](const std::string& output, const std::string& source) {
+    return run_program(
+        {"import", "beads.csv", "-o", output, "--timestep", "1", "--y-up", "--source", source, "-q"});
+  };
+  const std::string simulated = sha256_of("sim.h5");
+  for (const char* source : {"simulation", "experiment", "unknown"}) {
+    const Ran refused = import("sim.h5", source);
+    EXPECT_EQ(refused.code, 2) << source;
+    EXPECT_NE(refused.err.find("is not an imported trajectory"), std::string::npos) << refused.err;
+    EXPECT_EQ(sha256_of("sim.h5"), simulated);
+  }
+  for (int k = 0; k < 2; ++k) {
+    const Ran ran = import("imported.h5", "simulation");
+    EXPECT_EQ(ran.code, 0) << ran.err;
+  }
+}
+
 TEST(Outputs, FilesAreReplacedByTheirOwnKindOrByForce) {
   const Sandbox sandbox;
   const std::vector<std::vector<std::string>> twice = {
