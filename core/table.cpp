@@ -20,8 +20,6 @@ namespace {
 /// The number of a field, NaN for an empty one; nothing if it is not a finite number.
 std::optional<double> number_of(std::string_view field) {
   if (field.empty() || field == "nan" || field == "NaN") return std::numeric_limits<double>::quiet_NaN();
-  if (field == "True" || field == "true") return 1;  // as pandas writes
-  if (field == "False" || field == "false") return 0;
   double value = 0;
   const char* first = field.data() + (field.front() == '+' ? 1 : 0);
   const auto [end, error] = std::from_chars(first, field.data() + field.size(), value);
@@ -29,15 +27,31 @@ std::optional<double> number_of(std::string_view field) {
   return value;
 }
 
+/// 1 or 0 for a mark, as pandas writes them; nothing for other fields.
+std::optional<double> mark_of(std::string_view field) {
+  if (field == "True" || field == "true") return 1;
+  if (field == "False" || field == "false") return 0;
+  return {};
+}
+
 }  // namespace
 
-const std::vector<double>& Table::column(const std::string& name) const {
+std::size_t Table::index_of(const std::string& name) const {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
     throw ConfigError(
         {.file = file, .key = "column"},
         fmt::format("there is no column \"{}\"; the columns are {}", name, fmt::join(names, ", ")));
-  const auto c = static_cast<std::size_t>(found - names.begin());
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+const std::vector<double>& Table::column_of_marks(const std::string& name) const {
+  const std::size_t c = index_of(name);
+  return marks.contains(c) ? columns[c] : column(name);
+}
+
+const std::vector<double>& Table::column(const std::string& name) const {
+  const std::size_t c = index_of(name);
   const auto is_text = [&](std::size_t k) { return texts.contains(k); };
   if (!is_text(c)) return columns[c];
   std::vector<std::string> numeric;
@@ -69,6 +83,7 @@ Table read_table(const std::filesystem::path& path) {
       twin = twin_of_index(table.names);
       check_column_names({table.names.begin() + (twin ? 1 : 0), table.names.end()}, where);
       table.columns.resize(fields.size());
+      for (std::size_t c = 0; c < fields.size(); ++c) table.marks.insert(c);
       continue;
     }
     if (fields.size() != table.names.size())
@@ -78,7 +93,9 @@ Table read_table(const std::filesystem::path& path) {
     for (std::size_t c = 0; c < fields.size(); ++c) {
       const auto number = number_of(fields[c]);
       if (!number) table.texts.try_emplace(c, Table::Text{line_number, std::string(fields[c].substr(0, 60))});
-      table.columns[c].push_back(number.value_or(std::numeric_limits<double>::quiet_NaN()));
+      const auto mark = mark_of(fields[c]);
+      if (!mark) table.marks.erase(c);
+      table.columns[c].push_back(number ? *number : mark.value_or(std::numeric_limits<double>::quiet_NaN()));
     }
   }
   if (table.n_rows() == 0)

@@ -35,6 +35,12 @@ Table table_of(const py::object& said) {
       continue;
     }
     table.columns.emplace_back(column.data(), column.data() + column.size());
+    if (py::array::ensure(said.attr("__getitem__")(name)).dtype().kind() == 'b') {
+      const std::size_t c = table.names.size() - 1;
+      table.texts[c] = {.line = 1,
+                        .word = table.columns[c].empty() || table.columns[c][0] == 0 ? "False" : "True"};
+      table.marks.insert(c);
+    }
     if (column.ndim() != 1 || table.columns.back().size() != table.n_rows())
       throw InputError({.file = table.file, .key = table.names.back()},
                        fmt::format("has {} values; the first column has {}.", column.size(), table.n_rows()));

@@ -35,13 +35,13 @@ class Columns {
         throw ConfigError(
             {.file = {}, .key = "--columns"},
             fmt::format("there is no quantity '{}'; there are: {}.", quantity, fmt::join(kQuantities, ", ")));
-      (void)table.column(name);
+      (void)values_of(quantity, name);
     }
   }
   /// The numbers of a quantity; null if the table has none.
   [[nodiscard]] const std::vector<double>* find(const std::string& quantity) const {
     const std::string name = name_of(quantity);
-    return std::ranges::find(table_.names, name) == table_.names.end() ? nullptr : &table_.column(name);
+    return std::ranges::find(table_.names, name) == table_.names.end() ? nullptr : &values_of(quantity, name);
   }
   /// \throws ConfigError if the table has none
   [[nodiscard]] const std::vector<double>& at(const std::string& quantity) const {
@@ -63,6 +63,11 @@ class Columns {
   }
 
  private:
+  [[nodiscard]] const std::vector<double>& values_of(const std::string& quantity,
+                                                     const std::string& name) const {
+    return quantity == "tracer" ? table_.column_of_marks(name) : table_.column(name);
+  }
+
   const Table& table_;
   const std::map<std::string, std::string>& renamed_;
 };

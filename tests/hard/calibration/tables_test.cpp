@@ -137,6 +137,19 @@ TEST(Tables, ColumnsOfTextStandBesideThoseOfNumbers) {
                              "t.csv:2: b:", "no column holds numbers alone");
 }
 
+// As pandas writes marks. One that strays into a column of numbers is not the number 1.
+TEST(Tables, MarksAreNoNumbers) {
+  const TemporaryFolder folder;
+  put_file(folder / "t.csv", "x,y,tracer\n1,2,True\n2,true,False\n");
+  const Table table = read_table(folder / "t.csv");
+  EXPECT_EQ(table.column_of_marks("tracer"), (std::vector<double>{1, 0}));
+  EXPECT_EQ(table.column_of_marks("x"), (std::vector<double>{1, 2}));
+  expect_refusal<InputError>([&] { (void)table.column("tracer"); },
+                             "t.csv:2: tracer: \"True\" is not a finite");
+  expect_refusal<InputError>([&] { (void)table.column("y"); }, "t.csv:3: y: \"true\" is not a finite number");
+  expect_refusal<InputError>([&] { (void)table.column_of_marks("y"); }, "t.csv:3: y: \"true\"");
+}
+
 TEST(Tables, FieldsOfALine) {
   using Fields = std::vector<std::string_view>;
   EXPECT_EQ(fields_of("a, b ,\"c,d\" ,"), (Fields{"a", "b", "c,d", ""}));

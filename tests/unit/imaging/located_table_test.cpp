@@ -14,7 +14,7 @@ namespace twincell::imaging {
 namespace {
 
 Table table_of(const std::vector<std::string>& names, const std::vector<std::vector<double>>& columns) {
-  return {.file = "beads.csv", .names = names, .columns = columns, .texts = {}};
+  return {.file = "beads.csv", .names = names, .columns = columns, .texts = {}, .marks = {}};
 }
 
 TEST(LocatedTable, FramesAreNumbersAndMayBeEmpty) {
