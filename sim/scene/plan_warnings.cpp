@@ -43,18 +43,47 @@ void warn_of_missing_friction(const Plan& plan, std::vector<std::string>& warnin
     warnings.push_back(fmt::format("the tangential law {}: no contact has friction, whatever mu is.", why));
 }
 
-/// Contact keys that the scene's file states and a value makes void: the law reads them, but nothing changes
-/// with them. They are no error, because a sweep over mu may begin at 0.
+/// Warns of keys that the scene's file states and a value makes void: they are read, but nothing changes with
+/// them. They are no error, because a sweep over mu or the amplitude may begin at 0.
+class VoidValues {
+ public:
+  /// \param warnings the sentences are added to these
+  VoidValues(const Scene& scene, std::vector<std::string>& warnings) : scene_(scene), warnings_(warnings) {}
+  void warn(const char* table, const char* key, const std::string& why) {
+    if (is_own(scene_.source->section(table), key))
+      warnings_.push_back(fmt::format("{}.{} has no effect: {}.", table, key, why));
+  }
+
+ private:
+  [[nodiscard]] bool is_own(const ConfigSection& table, const char* key) const {
+    return table.has(key) && !table.where(key).file.starts_with("preset ") &&
+           table.where(key).file != scene_.calibration.string();
+  }
+
+  const Scene& scene_;
+  std::vector<std::string>& warnings_;
+};
+
+void warn_of_resting_plate(const Scene& s, VoidValues& voids) {
+  if (s.drive.amplitude != 0 || s.drive.recorded || s.drive.ramp) return;
+  voids.warn("drive", "harmonics", "they are relative to the amplitude of the drive, which is 0");
+  if (!s.comoving && !s.drive.moves())
+    voids.warn("drive", "start", "the plate rests, because the amplitude of the drive is 0");
+}
+
+/// Masses of beads of several sizes depend on whether they are discs or spheres.
+void warn_of_void_inertia(const Scene& s, const Plan& plan, VoidValues& voids) {
+  const bool one_size = s.spread == SizeSpread::none && !s.intruder && !start_row(s.start).from_file;
+  if (!plan.rotation && one_size) voids.warn("beads", "inertia", "no bead turns");
+}
+
 void warn_of_void_values(const Scene& s, const Plan& plan, std::vector<std::string>& warnings) {
   if (!s.source) return;
+  VoidValues voids(s, warnings);
+  warn_of_resting_plate(s, voids);
+  warn_of_void_inertia(s, plan, voids);
   const ConfigSection contact = s.source->section("contact");
-  const auto is_own = [&](const char* key) {
-    return contact.has(key) && !contact.where(key).file.starts_with("preset ") &&
-           contact.where(key).file != s.calibration.string();
-  };
-  const auto warn = [&](const char* key, const std::string& why) {
-    if (is_own(key)) warnings.push_back(fmt::format("contact.{} has no effect: {}.", key, why));
-  };
+  const auto warn = [&](const char* key, const std::string& why) { voids.warn("contact", key, why); };
   if (s.contact.tangential != NoTangential::kWord && !plan.rotation)
     for (const char* key : {"k_t", "gamma_t", "c_t", "c_t_over_c_n"}) warn(key, "mu is 0 for all contacts");
   else if (contact.has("restitution") && contact.number("restitution") == 1.0)

@@ -199,6 +199,21 @@ void refuse_unread(const Section& table, const ContactChoice& laws, Voids& voids
   }
 }
 
+/// Refuses keys of [contact.wall] that the own tables of all walls of the cell state.
+void refuse_replaced(const Section& contact, const Section& walls, const Scene& scene, Voids& voids) {
+  std::vector<std::string> own;
+  for (const auto& [table, names] : wall_tables())
+    if (std::ranges::any_of(scene.walls(), [&](const Wall& w) { return w.name == names.front(); }))
+      own.push_back(table);
+  if (own.empty()) return;
+  for (const std::string& key : all_law_keys())
+    if (walls.has(key) &&
+        std::ranges::all_of(own, [&](const std::string& table) { return contact.section(table).has(key); }))
+      voids.refuse(walls, {key},
+                   fmt::format("all walls of the cell have their own: [contact.{}].",
+                               fmt::join(own, "] and [contact.")));
+}
+
 }  // namespace
 
 void read_contact(const Section& s, Scene& scene, Voids& voids) {
@@ -238,6 +253,7 @@ void read_contact(const Section& s, Scene& scene, Voids& voids) {
     refuse_unread(own, c, voids);
     for (const auto& name : names) c.wall[name] = ContactTable({own, walls, s});
   }
+  refuse_replaced(s, walls, scene, voids);
 }
 
 namespace {

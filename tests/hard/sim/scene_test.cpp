@@ -496,6 +496,20 @@ TEST(Contact, FormerWordsAreRefusedWithThoseOfToday) {
     EXPECT_NE(complaint(kGood, {former}).find(sentence), std::string::npos) << complaint(kGood, {former});
 }
 
+TEST(Contact, KeysThatAllWallsReplaceAreRefused) {
+  const std::string mu = "contact.wall.mu=0.1", bottom = "contact.bottom.mu=0.3",
+                    sides = "contact.sides.mu=0.3";
+  const std::string said = complaint(kGood, {mu, bottom, sides});
+  EXPECT_NE(said.find("contact.wall.mu: all walls of the cell have their own: [contact.bottom] and "
+                      "[contact.sides]."),
+            std::string::npos)
+      << said;
+  EXPECT_EQ(complaint(kGood, {mu, bottom}), "accepted");
+  EXPECT_EQ(complaint(kGood, {mu, bottom, sides, "cell.lid=wall", "cell.height=40"}), "accepted");
+  EXPECT_NE(complaint(kGood, {mu, bottom, "cell.sides=periodic"}), "accepted");
+  EXPECT_EQ(complaint(kGood, {mu, "contact.bottom.k_n=1e7", "contact.sides.mu=0.3"}), "accepted");
+}
+
 TEST(Contact, InnermostTableWins) {
   const Scene s =
       read_scene_text(kGood +
@@ -703,6 +717,24 @@ TEST(Scene, KeysWithoutEffectAreWarnedOf) {
       "of.";
   EXPECT_EQ(warned({dashpot, ratio, "contact.mu=0.3", "contact.restitution=1.0"}, undamped), 1);
   EXPECT_EQ(warned({dashpot, ratio, "contact.mu=0.3", "contact.restitution=0.99"}, undamped), 0);
+  const std::string harmonics = "drive.harmonics=[[0.1,0.2]]", rest = "drive.gamma=0.0";
+  const std::string none =
+      "drive.harmonics has no effect: they are relative to the amplitude of the drive, "
+      "which is 0.";
+  EXPECT_EQ(warned({harmonics, rest}, none), 1);
+  EXPECT_EQ(warned({harmonics}, none), 0);
+  const std::string still =
+      "drive.start has no effect: the plate rests, because the amplitude of the drive is 0.";
+  EXPECT_EQ(warned({"drive.start=abrupt", rest}, still), 1);
+  EXPECT_EQ(warned({"drive.start=comoving", rest}, still), 0);
+  EXPECT_EQ(warned({"drive.start=abrupt"}, still), 0);
+  const std::string inertia = "beads.inertia=sphere", no_turn = "beads.inertia has no effect: no bead turns.";
+  EXPECT_EQ(warned({inertia, "contact.tangential=none"}, no_turn), 1);
+  EXPECT_EQ(warned({inertia, "contact.mu=0"}, no_turn), 1);
+  EXPECT_EQ(warned({inertia}, no_turn), 0);
+  EXPECT_EQ(warned({inertia, "contact.mu=0", "beads.spread=uniform", "beads.spread_width=0.1"}, no_turn), 0);
+  const Scene smooth = read_scene_text("preset = \"bhateja-2016-smooth-2d\"\n[drive]\nk_m = 9\n", "s");
+  EXPECT_TRUE(make_plan(smooth).warnings.empty()) << make_plan(smooth).warnings.front();
   const Scene paper = read_scene_text(
       "preset = \"fortini-huang-2015\"\nbeads.count = 100\n"
       "drive.gamma = 1.2\ncontact.mu = 0\n",
