@@ -26,13 +26,18 @@ bool is_blank(const cv::Mat& frame) {
   return low == high;
 }
 
+std::vector<double> radii_of(const std::vector<Detection>& beads) {
+  std::vector<double> radii;
+  radii.reserve(beads.size());
+  for (const Detection& b : beads) radii.push_back(b.radius);
+  return radii;
+}
+
 /// The settings with the diameter of the rims, unless they then locate fewer discs. A profile describes discs
 /// of another diameter as well, so that the evidence hardly determines it.
 LocatorOptions at_rim(const cv::Mat& frame, LocatorOptions settled, const std::vector<Detection>& beads) {
-  std::vector<double> radii;
-  for (const Detection& b : beads) radii.push_back(b.radius);
   LocatorOptions rim = settled;
-  rim.diameter_px = std::clamp(2 * upper_median(std::move(radii)), 3.0, 400.0);
+  rim.diameter_px = std::clamp(2 * upper_median(radii_of(beads)), 3.0, 400.0);
   rim.size_known = true;
   return locate(frame, rim).beads.size() >= beads.size() ? rim : settled;
 }
@@ -83,6 +88,15 @@ double distance_of_parts(const std::vector<Detection>& beads, const LocatorOptio
   const double closest = nearest[static_cast<std::size_t>(kFew * n)], half = nearest[nearest.size() / 2];
   if (closest <= kDiameters * settled.diameter_px) return 0;
   return settled.diameter_px < kSmall_px || half < kTouching * closest ? closest : 0;
+}
+
+/// The median width of discs, px, if they are smaller than the beads that can be located well. 0: they are
+/// not.
+double width_of_spots(const std::vector<Detection>& beads, const LocatorOptions& settled) {
+  constexpr double kSmallest_px = 5;
+  if (beads.empty() || !settled.other_diameters_px.empty()) return 0;
+  const double width = 2 * upper_median(radii_of(beads));
+  return width < kSmallest_px ? width : 0;
 }
 
 /// A frame and the settings chosen on it.
@@ -141,7 +155,9 @@ LocatorConfiguration adapted(const cv::Mat& frame, ChoiceOnFrame chosen, const L
     settled = at_rim(frame, std::move(settled), beads);
   }
   settled = with_pale_discs(frame, settled);
-  chosen.choice.apart_px = distance_of_parts(locate(frame, settled).beads, settled);
+  const std::vector<Detection> beads = locate(frame, settled).beads;
+  chosen.choice.apart_px = distance_of_parts(beads, settled);
+  if (given.diameter_px <= 0) chosen.choice.spots_px = width_of_spots(beads, settled);
   return {settled, static_cast<std::int64_t>(chosen.number), std::move(chosen.choice)};
 }
 

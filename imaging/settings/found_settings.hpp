@@ -43,6 +43,8 @@ struct SettingsChoice {
   /// The smallest distance of two of the chosen discs, px, if it is that of larger beads that touch, of which
   /// the discs may be the highlights. 0: it is not.
   double apart_px = 0;
+  /// Width of the chosen discs, px, if it is that of the highlights of larger beads or of gaps. 0: it is not.
+  double spots_px = 0;
   /// Share of the pixels that have the brightest grey level of the picture, if the beads are dark. A camera
   /// that its light does not saturate has few of them.
   double saturated = 0;

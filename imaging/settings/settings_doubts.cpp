@@ -35,6 +35,12 @@ std::vector<std::string> settings_doubts(const SettingsChoice& choice, const std
         "highlights of larger beads; compare the overlay of twincell locate --overlay with that of "
         "--diameter {:.1f}",
         choice.tried.front().rim_px, choice.apart_px, choice.apart_px));
+  if (choice.spots_px > 0 && choice.apart_px <= 0)
+    doubts.push_back(fmt::format(
+        "the discs are {:.1f} px wide: discs this small may be highlights of larger beads, or gaps "
+        "between them; check the overlay of twincell locate --overlay, and give the diameter of "
+        "larger beads with --diameter",
+        choice.spots_px));
   constexpr double kSaturated = 0.1;
   if (choice.saturated > kSaturated)
     doubts.push_back(
