@@ -79,7 +79,8 @@ std::string doubt_text(const Run& run) {
   const Measure s_b = bouncing_of(run), s_c = convection_of(run);
   if (s_b.is_open()) parts.push_back(s_b.text());
   if (s_c.is_open()) parts.push_back(s_c.text());
-  if (only_annealed(run)) parts.push_back((s_c.is_open() ? "" : fmt::format("s_c = {:.3g}, ", s_c.result->value())) + "annealed");
+  if (only_annealed(run))
+    parts.push_back((s_c.is_open() ? "" : fmt::format("s_c = {:.3g}, ", s_c.result->value())) + "annealed");
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
