@@ -15,8 +15,9 @@ namespace twincell::analysis {
 /// is undetermined.
 std::vector<BedPhase> possible_phases(const Run& run);
 
-/// The same for the runs of one side, which differ by chance: their common phase if more than half of them
-/// leave no other one possible, else all phases that one of them may have. Empty without a common phase.
+/// The same for the runs of one side, which differ by chance: all phases that one of them may have. A
+/// threshold separates them all if the sum of their distances from it, in standard errors, exceeds 1.96
+/// sqrt(n). Empty without a common phase.
 std::vector<BedPhase> possible_phases(const std::vector<Run>& runs, const std::vector<std::size_t>& members);
 
 /// Why a run leaves several phases possible: "s_c = 1.18 [0.79, 1.84], threshold 1"; empty if it does not.
