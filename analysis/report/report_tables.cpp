@@ -179,8 +179,7 @@ std::string runs_table(const Comparison& c) {
     for (const Column& column : columns) table.cell(column.cells[i]);
   }
   return "<p class=\"in-print\">Printed: the phases, s<sub>b</sub>, s<sub>c</sub> and the numbers that "
-         "really "
-         "differ; runs.csv has all.</p>\n" +
+         "really differ; runs.csv has all.</p>\n" +
          table.html();
 }
 

@@ -255,8 +255,7 @@ void check_list_by_plate(PhaseTable& table, std::span<const double> plate_px, bo
     const std::string lost = slips > 0 ? " (" + slips_in_words(alone->frames) + ")" : "";
     refuse_list(
         fmt::format("the phases of the list are up to {:.2g} frames from those of the plate in the frames{}, "
-                    "which follows "
-                    "its own phases to {:.2g} px and those of the list to {:.2g} px",
+                    "which follows its own phases to {:.2g} px and those of the list to {:.2g} px",
                     farthest, lost, std::sqrt(of_plate.left / static_cast<double>(heights.size())),
                     std::sqrt(fit.left / static_cast<double>(heights.size()))));
   }

@@ -43,9 +43,8 @@ void check_lock_by_bed(PhaseTable& table, const BedMotion& motion);
 /// Checks the phases of a list against the plate. It can tell if it is seen in 60 % of the frames and follows
 /// a sine of any period (phases_from_plate). Then the first two harmonics of the listed phases must explain
 /// half of the variance of its height, and the fundamental must be within 0.75 frame intervals of a sine that
-/// begins at phase 0. No frame may be further than that from the
-/// phases that the plate shows, where the plate follows these clearly better, the missing and doubled frames
-/// that they need being counted.
+/// begins at phase 0. No frame may be farther than that from the phases that the plate shows, if the plate
+/// follows these clearly better after a cost for each missing or doubled frame that they need.
 /// \param plate_px [frames] LockEvidence::plate_px
 /// \param sine whether the drive is known to have that phase; a recorded one need not
 /// \throws ConfigError naming the frames per cycle of list and plate, or the difference of their phases

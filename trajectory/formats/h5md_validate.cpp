@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
 #include "core/hdf5_self_contained.hpp"
