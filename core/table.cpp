@@ -93,7 +93,7 @@ Table read_table(const std::filesystem::path& path) {
     for (std::size_t c = 0; c < fields.size(); ++c) {
       const auto number = number_of(fields[c]);
       if (!number) table.texts.try_emplace(c, Table::Text{line_number, std::string(fields[c].substr(0, 60))});
-      const auto mark = mark_of(fields[c]);
+      const auto mark = number ? std::nullopt : mark_of(fields[c]);
       if (!mark) table.marks.erase(c);
       table.columns[c].push_back(number ? *number : mark.value_or(std::numeric_limits<double>::quiet_NaN()));
     }

@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/table.hpp"
@@ -47,18 +49,15 @@ ValueTable::ValueTable(const std::filesystem::path& file, std::size_t n_frames, 
   const Table table = read_table(file);
   name_ = column_of_numbers(table);
   const std::vector<double>& numbers = table.column(name_);
-  std::map<std::size_t, std::vector<bool>> given;
+  std::set<std::pair<std::size_t, std::size_t>> given;
   for (std::size_t row = 0; row < table.n_rows(); ++row) {
     const std::size_t frame = index_of(table, "frame", row, n_frames),
                       bead = index_of(table, "particle", row, n_beads);
-    std::vector<double>& of_frame = values_.try_emplace(frame, n_beads, kUnknown).first->second;
-    std::vector<bool>& had = given.try_emplace(frame, n_beads, false).first->second;
-    if (had[bead])
+    if (!given.emplace(frame, bead).second)
       throw InputError(
           {.file = table.file, .key = "particle"},
           fmt::format("row {}: particle {} has a second number in frame {}", row + 1, bead, frame));
-    had[bead] = true;
-    of_frame[bead] = numbers[row];
+    values_.try_emplace(frame, n_beads, kUnknown).first->second[bead] = numbers[row];
   }
 }
 
