@@ -341,9 +341,11 @@ std::vector<hsize_t> extents(hid_t dataset) {
 }
 
 Series::Series(hid_t group, const std::string& name, hid_t file_type, std::vector<hsize_t> record,
-               hsize_t records_per_chunk, const void* fill)
+               const void* fill, Storage storage)
     : record_(std::move(record)) {
-  std::vector<hsize_t> now{0}, most{H5S_UNLIMITED}, chunk{records_per_chunk};
+  constexpr hsize_t kNumbersPerChunk = 1024;
+  const hsize_t numbers = std::max<hsize_t>(count_of(record_), 1);
+  std::vector<hsize_t> now{0}, most{H5S_UNLIMITED}, chunk{std::max<hsize_t>(kNumbersPerChunk / numbers, 1)};
   for (hsize_t n : record_) {
     now.push_back(n);
     // A trajectory without beads is valid, but a maximum of zero is not.
@@ -354,7 +356,7 @@ Series::Series(hid_t group, const std::string& name, hid_t file_type, std::vecto
       own(H5Screate_simple(static_cast<int>(now.size()), now.data(), most.data()), "making a space");
   const Handle plist = own(H5Pcreate(H5P_DATASET_CREATE), "making a property list");
   check(H5Pset_chunk(plist.get(), static_cast<int>(chunk.size()), chunk.data()), "setting chunks");
-  if (!record_.empty()) {
+  if (!record_.empty() && storage == Storage::deflated) {
     check(H5Pset_shuffle(plist.get()), "setting shuffle");
     check(H5Pset_deflate(plist.get(), 4), "setting deflate");
   }

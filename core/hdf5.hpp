@@ -98,14 +98,18 @@ std::uint64_t stored_bytes(hid_t dataset);
 /// \throws RunError
 void require_stored(hid_t dataset, const std::string& name);
 
+/// How the records of a series that are no scalars lie in the file.
+enum class Storage { deflated, plain };
+
 /// A dataset that grows along its first dimension, one record per frame.
 class Series {
  public:
   Series() = default;
+  /// A chunk holds one record, or as many small ones as make 1024 numbers.
+  ///
   /// \param record shape of one record; empty for a scalar series
-  /// \param records_per_chunk 1 for bead columns, 1024 for scalar series
   Series(hid_t group, const std::string& name, hid_t file_type, std::vector<hsize_t> record,
-         hsize_t records_per_chunk, const void* fill = nullptr);
+         const void* fill = nullptr, Storage storage = Storage::deflated);
   /// Opens an existing dataset for reading. The series converts to false if there is none or it is a scalar.
   Series(hid_t group, const std::string& name);
   [[nodiscard]] explicit operator bool() const { return static_cast<bool>(dataset_); }

