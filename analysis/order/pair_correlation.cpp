@@ -54,7 +54,7 @@ class PairCorrelation : public Observable {
     // A bead is no neighbour of its own: the density is that of the other beads.
     const double density = static_cast<double>(window.beads - 1) / window.content;
     // The farthest edge of a bin up to which each bead is a reference bead, and the pairs in those bins.
-    const Neighbours pairs = find_neighbours(frame, info_.box, kFarthest);
+    const Neighbours pairs = find_neighbours(frame, info_.box, farthest_ + kRounding);
     std::vector<std::size_t> references(kBins, 0), found(kBins, 0);
     for (std::size_t i = 0; i < frame.position.size(); ++i) {
       if (!frame.present(i) || !frame.position[i].allFinite()) continue;
