@@ -330,9 +330,10 @@ Target onset_of_figs_4_and_5(const Size& size, const std::deque<Boundary>& all) 
   constexpr double kLow = kConvectionKm * 0.75, kHigh = kConvectionKm * 1.25;
   constexpr int kMinLayersWithSlips = 20;
   Target t{"onset of convection, random, at the N_l of Figs. 4, 5", "K_m 3.3 +- 25 %", "", Verdict::absent,
-           fmt::format("the paper does not state that N_l; this is the best of the heights from N_l = {} on, where "
-                       "p_s is defined",
-                       kMinLayersWithSlips)};
+           fmt::format(
+               "the paper does not state that N_l; this is the best of the heights from N_l = {} on, where "
+               "p_s is defined",
+               kMinLayersWithSlips)};
   t.not_counted = "counted in `p1-fig4`, at the height of its other numbers";
   for (const int layers : size.layers)
     if (const Boundary* b = find(all, layers, true, true)) {

@@ -15,6 +15,7 @@
 #include "core/error.hpp"
 #include "core/json_text.hpp"
 #include "core/table.hpp"
+#include "reproduce/exponent_error.hpp"
 #include "reproduce/gas.hpp"
 #include "reproduce/user_points.hpp"
 
@@ -53,6 +54,12 @@ const std::vector<Study>& studies(bool of_height) {
   return of_height ? height : temperature;
 }
 
+/// Whether a point is fluid and its W = V_p^2 lies in a window.
+bool in_window(const calibration::DataPoint& p, double low, double high) {
+  const double w = p.x * p.x;
+  return w >= low && w <= high && p.y > 0;
+}
+
 /// Unweighted fit of ln y = ln C + alpha ln V_p over a window of W. Solid points have y = 0, so they are left
 /// out and counted.
 struct Exponent {
@@ -65,12 +72,14 @@ struct Exponent {
   std::vector<Estimate> measured = {};  ///< y of the points with its interval; empty for the user's points
 
   [[nodiscard]] Estimate alpha() const {
-    Estimate e{.value = fit->fit.value("alpha"), .low = {}, .high = {}};
-    if (const auto& interval = fit->intervals[1]) {
-      e.low = interval->low;
-      e.high = interval->high;
+    std::vector<double> x;
+    std::vector<Estimate> y;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if (!in_window(points[k], low, high)) continue;
+      x.push_back(points[k].x);
+      y.push_back(measured.empty() ? Estimate{.value = points[k].y, .low = {}, .high = {}} : measured[k]);
     }
-    return e;
+    return exponent_with_error(*fit, x, y);
   }
   [[nodiscard]] std::string text() const {
     std::string s =
@@ -87,10 +96,9 @@ Exponent exponent_of(std::string name, std::vector<calibration::DataPoint> point
              .points = std::move(points),
              .fit = {},
              .why_not = {}};
-  std::size_t inside = 0;
-  for (const calibration::DataPoint& p : e.points)
-    if (const double w = p.x * p.x; w >= low && w <= high && p.y > 0) ++inside;
-  constexpr std::size_t kMinFluidPoints = 3;
+  const auto inside = std::ranges::count_if(
+      e.points, [&](const calibration::DataPoint& p) { return in_window(p, low, high); });
+  constexpr std::ptrdiff_t kMinFluidPoints = 3;
   if (inside < kMinFluidPoints)
     e.why_not = fmt::format("{} fluid points lie within W = {:.3g} to {:.3g}, {} are needed", inside, low,
                             high, kMinFluidPoints);
@@ -230,9 +238,11 @@ Reproduction run(const Request& request, bool of_height) {
     fitted.back().printed = study.expected;
     fitted.back().measured = measured_of(points, of_height);
     std::optional<Exponent> other;
-    if (std::string_view(study.name) == kWarr && peak)
+    if (std::string_view(study.name) == kWarr && peak) {
       other = exponent_of(study.name, of_gas(points, of_height),
                           of_height ? peak->grid * (1 - 1e-9) : kLowOfWarr, study.high);
+      other->measured = measured_of(points, of_height);
+    }
     r.targets.push_back(target_of(study, &fitted.back(), of_height, other ? &*other : nullptr));
   }
   // The universal window of the paper's sec. V, and the user's window.

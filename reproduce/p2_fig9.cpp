@@ -10,6 +10,7 @@
 
 #include "calibration/fit/curve_fit.hpp"
 #include "reproduce/alternatives.hpp"
+#include "reproduce/exponent_error.hpp"
 #include "reproduce/gas.hpp"
 
 namespace twincell::reproduce {
@@ -231,24 +232,22 @@ Exponent exponent_of(const std::vector<GasPoint>& points) {
   if (!peak || !w_2) return x;
   const std::vector<double> blocks = block_bouncing(points);
   x.window = fmt::format("[{:.3g}, {:.3g}]", peak->grid, *w_2);
-  std::vector<calibration::DataPoint> data;
+  std::vector<double> v_p;
+  std::vector<Estimate> t_z;
   for (const GasPoint& p : points) {
     const auto t = p.get("T_z");
     if (!t || p.at < peak->grid || p.at > *w_2 || p.solid()) continue;
     if (std::ranges::find(blocks, p.at) != blocks.end())
       x.window += fmt::format(", without {:.3g}, where the bed bounces as a block", p.at);
     else
-      data.push_back({.x = std::sqrt(p.at), .y = t->value});
+      v_p.push_back(std::sqrt(p.at)), t_z.push_back(*t);
   }
   x.ends_with_data = *w_2 == points.back().at;
   if (x.ends_with_data) x.window += ", where the data end: W_2 is not reached";
-  if (data.size() < 3) return x;
-  const calibration::CurveFit fit = calibration::fit_curve(calibration::law_named("power"), data);
-  Estimate& e = x.alpha.emplace(Estimate{.value = fit.fit.value("alpha"), .low = {}, .high = {}});
-  if (fit.intervals[1]) {
-    e.low = fit.intervals[1]->low;
-    e.high = fit.intervals[1]->high;
-  }
+  if (v_p.size() < 3) return x;
+  std::vector<calibration::DataPoint> data;
+  for (std::size_t k = 0; k < v_p.size(); ++k) data.push_back({.x = v_p[k], .y = t_z[k].value});
+  x.alpha = exponent_with_error(calibration::fit_curve(calibration::law_named("power"), data), v_p, t_z);
   return x;
 }
 

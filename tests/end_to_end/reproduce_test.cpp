@@ -167,6 +167,17 @@ TEST(Reproduce, TemperatureAndSlipsShareTheirRuns) {
   EXPECT_GT(points(fig5), points(fig4));  // it reused the points of Fig. 4 and had time for another
 }
 
+// The budget and the threads decide what is run, not what is read.
+TEST(Reproduce, EveryStoredSettingIsJudgedOnOneThread) {
+  const TemporaryFolder folder;
+  const std::string stored = TWINCELL_SOURCE_DIR "/docs/reproduce/p2-fig6.json";
+  const Ran again = run_program(
+      {"reproduce", "p2-fig6", "--stored", stored, "--json", "-q", "--threads", "1", "-o", folder / "r"});
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(nlohmann::json::parse(again.out)["targets"].size(),
+            nlohmann::json::parse(std::ifstream(stored))["targets"].size());
+}
+
 TEST(Reproduce, StoredRunsAreJudgedAgainWithoutASimulation) {
   const TemporaryFolder folder;
   const auto fig4 = reproduced("p1-fig4", folder / "four", {"p1-fig4"});
