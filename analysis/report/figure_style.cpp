@@ -36,22 +36,6 @@ bool is_long(const PlotAxis& a) {
   return a.logarithmic && a.high / a.low >= kMinLongRatio;
 }
 
-/// Tics at 1, 2, 5 times the powers of ten, the other multiples without a number.
-std::string plain_tics(const PlotAxis& a) {
-  std::string tics;
-  const int from = static_cast<int>(std::floor(std::log10(a.low))),
-            to = static_cast<int>(std::floor(std::log10(a.high)));
-  for (int decade = from; decade <= to; ++decade)
-    for (int m = 1; m <= 9; ++m) {
-      const double at = m * std::pow(10, decade);
-      if (at < a.low || at > a.high) continue;
-      const bool numbered = m == 1 || m == 2 || m == 5;
-      tics += fmt::format("{}{}", tics.empty() ? "" : ", ",
-                          numbered ? fmt::format("{:.6g}", at) : fmt::format("'' {:.6g} 1", at));
-    }
-  return tics;
-}
-
 /// Distance of the tics of a linear axis, 1, 2 or 5 times a power of ten: 4 to 9 tics.
 double tic_step(const PlotAxis& a) {
   constexpr double kTics = 4;
@@ -59,6 +43,29 @@ double tic_step(const PlotAxis& a) {
   for (const double step : {1.0, 2.0, 5.0})
     if (step * decade >= least) return step * decade;
   return 10 * decade;
+}
+
+/// Tics of a logarithmic axis at 1, 2, 5 times the powers of ten, the other multiples without a number. On an
+/// axis so short that it may contain one of these only, the tics of a linear axis.
+std::string plain_tics(const PlotAxis& a) {
+  std::vector<std::string> tics;
+  constexpr double kRatioWithTwoNumbers = 5;
+  if (a.high / a.low < kRatioWithTwoNumbers) {
+    const double step = tic_step(a);
+    for (int k = static_cast<int>(std::ceil(a.low / step)); k * step <= a.high; ++k)
+      tics.push_back(fmt::format("{:.6g}", k * step));
+    return fmt::format("{}", fmt::join(tics, ", "));
+  }
+  const int from = static_cast<int>(std::floor(std::log10(a.low))),
+            to = static_cast<int>(std::floor(std::log10(a.high)));
+  for (int decade = from; decade <= to; ++decade)
+    for (int m = 1; m <= 9; ++m) {
+      const double at = m * std::pow(10, decade);
+      if (at < a.low || at > a.high) continue;
+      const bool numbered = m == 1 || m == 2 || m == 5;
+      tics.push_back(numbered ? fmt::format("{:.6g}", at) : fmt::format("'' {:.6g} 1", at));
+    }
+  return fmt::format("{}", fmt::join(tics, ", "));
 }
 
 std::string one_axis(char name, const PlotAxis& a, bool powers) {

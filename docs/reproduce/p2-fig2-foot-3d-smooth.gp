@@ -45,7 +45,7 @@ set format x '%g'
 set ylabel 'T_z/(m V_p^2)'
 set yrange [0.326493197:0.735203857]
 set logscale y
-set ytics ('' 0.4 1, 0.5, '' 0.6 1, '' 0.7 1)
+set ytics (0.4, 0.5, 0.6, 0.7)
 set format y '%g'
 set title 'Foot of the curve, 3D smooth, by the beginning of the run'
 set xtics ('1.4' 1.4, '1.7' 1.7, '2' 2, '3' 3, '5' 5, '7' 7, '11' 11)

@@ -50,6 +50,8 @@ TEST(FigureStyle, ALogarithmicPairHasOneFormat) {
   const std::string alone = axes(brief, linear);
   EXPECT_TRUE(has(alone, "set xtics (0.5, '' 0.6 1, '' 0.7 1, '' 0.8 1, '' 0.9 1, 1, 2, '' 3 1, '' 4 1, 5,"))
       << alone;
+  // An axis that contains 0.5 only of these has the tics of a linear one.
+  EXPECT_TRUE(has(axes(axis(true, 0.33, 0.74), linear), "set xtics (0.4, 0.5, 0.6, 0.7)"));
   EXPECT_TRUE(has(alone, "set format x '%g'"));
   EXPECT_TRUE(has(alone, "unset logscale y\n"));
   // With a longer one, both have powers of ten.
