@@ -8,6 +8,7 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
+#include "tests/support/environment_variable.hpp"
 #include "tests/support/program.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
@@ -288,9 +289,10 @@ TEST_F(BadInput, UnwritableOutput) {
 TEST_F(BadInput, InterruptLeavesNothing) {
   const std::string scene =
       std::string(TWINCELL_SOURCE_DIR) + "/data_samples/fortini-huang-crystal/scene.toml";
+  const EnvironmentVariable often("TWINCELL_PROGRESS_S", "0");
   for (const auto& [signal, code] : {std::pair{SIGINT, 130}, {SIGTERM, 143}}) {
     RunningProgram program({"simulate", scene, "-o", at("o.h5"), "--set", "time.cycles=500"});
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    ASSERT_TRUE(program.wait_for_a_line());
     program.signal(signal);
     const Ran ran = program.wait();
     EXPECT_EQ(ran.code, code) << ran.err;

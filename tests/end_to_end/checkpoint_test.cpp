@@ -21,7 +21,6 @@ namespace twincell {
 namespace {
 
 namespace fs = std::filesystem;
-using std::chrono::milliseconds;
 
 constexpr int kDone = 0, kUsage = 2, kInput = 3, kPartial = 5;
 
@@ -58,8 +57,7 @@ class Checkpoints : public ::testing::Test {
   /// Starts a run and stops it once it has saved a checkpoint that contains frames.
   [[nodiscard]] Ran stopped_in_the_middle(int signal) const {
     RunningProgram program(words({"--checkpoint-every", "0.02"}));
-    for (int k = 0; k < 1000 && !fs::exists(place_ / "segment-0002.h5"); ++k)
-      std::this_thread::sleep_for(milliseconds(5));
+    EXPECT_TRUE(program.wait_until(folder_.path(), [&] { return fs::exists(place_ / "segment-0002.h5"); }));
     program.signal(signal);
     return program.wait();
   }
@@ -74,9 +72,12 @@ TEST_F(Checkpoints, KilledAgainAndAgainTheRunEndsAsIfNothingHadHappened) {
   std::mt19937 random(20150101);
   int killed = 0, ended = 0;
   for (int k = 0; k < 60 && ended == 0; ++k) {
-    // Every update saves a checkpoint, so most kills hit a save.
+    // Every update saves a checkpoint: a kill right after a change of a file hits a save.
+    FolderEvents changes(folder_.path());
     RunningProgram program(words({"--resume", "--checkpoint-every", "1e-9"}));
-    std::this_thread::sleep_for(milliseconds(30 + random() % 300));
+    const std::size_t last = 20 + random() % 400;
+    for (std::size_t seen = 0, more = 1; seen < last && more > 0; seen += more)
+      more = changes.wait(program.id());
     program.signal(SIGKILL);
     const Ran ran = program.wait();
     if (ran.code == 128 + SIGKILL) {
@@ -341,8 +342,7 @@ TEST_F(Checkpoints, AFolderThatCannotBeIsRefusedAtOnce) {
   expect_refusal({"--checkpoint-every", "1"}, kUsage, {"o.h5.checkpoint", "cannot be created"});
   fs::remove(place_);
   RunningProgram first(words({"--checkpoint-every", "0.02"}));
-  for (int k = 0; k < 1000 && !fs::exists(place_ / "state.h5"); ++k)
-    std::this_thread::sleep_for(milliseconds(5));
+  EXPECT_TRUE(first.wait_until(folder_.path(), [&] { return fs::exists(place_ / "state.h5"); }));
   expect_refusal({"--resume"}, kUsage, {"another process"});
   first.signal(SIGKILL);
   static_cast<void>(first.wait());

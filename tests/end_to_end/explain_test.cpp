@@ -156,12 +156,15 @@ TEST_F(Explain, FilesWithoutAnEndAreRefused) {
 
 // A signal interrupts the placement of four million beads.
 TEST_F(Explain, ASignalEndsThePlacingOfManyBeads) {
+  FolderEvents opened(folder_.path(), IN_CLOSE_NOWRITE);  // the scene has been read; the beads come next
   RunningProgram program({"explain", scene_, "-q", "--set", "beads.count=4000000"});
-  std::this_thread::sleep_for(std::chrono::milliseconds(400));
-  const auto asked = std::chrono::steady_clock::now();
+  ASSERT_GT(opened.wait(program.id()), 0U);
+  const double before_s = program.cpu_s();
   program.signal(SIGTERM);
-  EXPECT_EQ(program.wait().code, 143);
-  EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(1));
+  const Ran ran = program.wait();
+  EXPECT_EQ(ran.code, 143);
+  EXPECT_NE(ran.err.find("Stopped by a signal"), std::string::npos) << ran.err;
+  EXPECT_LT(ran.cpu_s - before_s, 1);
 }
 
 TEST_F(Explain, ARefusalPointsToItsLine) {

@@ -582,8 +582,8 @@ TEST(Outputs, TwoRunsDoNotShareAnOutput) {
       n += entry.path().filename().string().starts_with(".twincell-") ? 1 : 0;
     return n;
   };
-  for (int wait = 0; wait < 2000 && temporaries() < 2; ++wait) ::usleep(10000);  // lock and unfinished file
-  ASSERT_EQ(temporaries(), 2);
+  const auto lock_and_unfinished_file = [&] { return temporaries() == 2; };
+  ASSERT_TRUE(first.wait_until(".", lock_and_unfinished_file));
   const Ran second = run_program({"simulate", "scene.toml", "-o", "both.h5", "-q"});
   EXPECT_EQ(second.code, 2);
   EXPECT_NE(second.err.find("another process"), std::string::npos) << second.err;
@@ -594,7 +594,7 @@ TEST(Outputs, TwoRunsDoNotShareAnOutput) {
 
   // The next run with the same output removes the files that a killed run left.
   RunningProgram killed({"simulate", "scene.toml", "-o", "both.h5", "-q", "--set", "time.cycles=100000"});
-  for (int wait = 0; wait < 2000 && temporaries() < 2; ++wait) ::usleep(10000);
+  ASSERT_TRUE(killed.wait_until(".", lock_and_unfinished_file));
   killed.signal(SIGKILL);
   EXPECT_EQ(killed.wait().code, 137);
   EXPECT_EQ(run_program({"simulate", "scene.toml", "-o", "both.h5", "-q"}).code, 0);
@@ -605,13 +605,12 @@ TEST(Outputs, TwoRunsDoNotShareAnOutput) {
 TEST(Outputs, ASecondSignalLeavesNothingEither) {
   const Sandbox sandbox;
   RunningProgram run({"render", "sim.h5", "-o", "big", "-q", "--pixels-per-sigma", "200"});
-  bool begun = false;
-  for (int wait = 0; wait < 2000 && !begun; ++wait) {
-    for (const auto& entry : fs::directory_iterator("."))
-      begun = begun || (entry.is_directory() && entry.path().filename().string().starts_with(".twincell-"));
-    ::usleep(5000);
-  }
-  ASSERT_TRUE(begun);
+  ASSERT_TRUE(run.wait_until(".", [] {  // the unfinished folder
+    const fs::directory_iterator entries(".");
+    return std::any_of(begin(entries), end(entries), [](const auto& entry) {
+      return entry.is_directory() && entry.path().filename().string().starts_with(".twincell-");
+    });
+  }));
   run.signal(SIGINT);
   run.signal(SIGINT);
   EXPECT_NE(run.wait().code, 0);

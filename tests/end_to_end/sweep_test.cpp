@@ -4,13 +4,11 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <chrono>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <regex>
-#include <thread>
 
 #include "tests/support/file_bytes.hpp"
 #include "tests/support/program.hpp"
@@ -192,10 +190,7 @@ TEST_F(Sweeps, TheTemplatesOfGnuParallelAndOfSlurmGiveTheSameBytes) {
 }
 
 TEST_F(Sweeps, KilledAgainAndAgainNothingIsLostAndNothingDoneTwice) {
-  const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(run(grid_, at("whole")).code, kDone);
-  // The kills come midway through a run, so its duration on this machine is measured.
-  const auto undisturbed = std::chrono::steady_clock::now() - start;
   std::mt19937 random(20150101);
   const auto results = [&] {
     // The text includes the seconds of each point, which would differ if the point were computed again.
@@ -209,8 +204,11 @@ TEST_F(Sweeps, KilledAgainAndAgainNothingIsLostAndNothingDoneTwice) {
   int killed = 0;
   for (int k = 0; k < 200; ++k) {
     const auto before = results();
+    FolderEvents changes(folder_.path());
     RunningProgram program({"sweep", "run", grid_, "--folder", at("k"), "-q", "--threads", "2"});
-    std::this_thread::sleep_for(undisturbed * (10 + random() % 50) / 100);
+    const std::size_t last = 10 + random() % 60;  // of the changes of files of this run
+    for (std::size_t seen = 0, more = 1; seen < last && more > 0; seen += more)
+      more = changes.wait(program.id());
     program.signal(SIGKILL);
     const Ran ran = program.wait();
     const auto after = results();

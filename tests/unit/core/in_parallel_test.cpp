@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <chrono>
+#include <latch>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -29,14 +29,11 @@ TEST(InParallel, EveryJobIsDoneOnce) {
 TEST(InParallel, JobsRunSideBySideOnAsManyThreadsAsAsked) {
   // Each task waits for the others: with fewer active threads they would wait for ever.
   constexpr int kThreads = 3;
-  std::atomic<int> waiting{0};
+  std::latch all_run(kThreads);
   std::mutex mutex;
   std::set<std::thread::id> seen;
   in_parallel(kThreads, kThreads, [&](std::size_t) {
-    ++waiting;
-    const auto begin = std::chrono::steady_clock::now();
-    while (waiting < kThreads && std::chrono::steady_clock::now() - begin < std::chrono::seconds(20))
-      std::this_thread::yield();
+    all_run.arrive_and_wait();
     const std::scoped_lock lock(mutex);
     seen.insert(std::this_thread::get_id());
   });
@@ -50,11 +47,13 @@ TEST(InParallel, JobsRunSideBySideOnAsManyThreadsAsAsked) {
 TEST(InParallel, TheFirstFailureIsThrownAndNothingBeginsAfterIt) {
   for (const int threads : {1, 2, 4}) {
     std::atomic<int> begun{0};
+    std::latch later_fails(1);
     try {
       in_parallel(100000, threads, [&](std::size_t i) {
         ++begun;
         // The later task fails first, while the earlier one is still running.
-        if (i == 10) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        if (i == 11) later_fails.count_down();
+        if (i == 10 && threads > 1) later_fails.wait();
         if (i == 10 || i == 11) throw std::runtime_error(std::to_string(i));
       });
       FAIL() << "nothing was thrown";
