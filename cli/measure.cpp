@@ -64,8 +64,8 @@ Run run_once(const MeasureOptions& options, const std::vector<std::string>& assi
   Run r{.measured = sweep::measure(run, options.analysis, options.scene, progress),
         .about = {},
         .provenance = {}};
-  for (const std::string& warning : run.warnings()) note(common, warning);
   const sweep::Measured& m = r.measured;
+  for (const std::string& warning : m.warnings) note(common, warning);
   r.about = {{"start", start}, {"cycles", m.cycles}, {"discarded", run.scene().discard}};
   if (std::isfinite(w)) r.about["w"] = w;
   if (m.precise) r.about["until"] = {{"reached", *m.precise}, {"text", m.until}};

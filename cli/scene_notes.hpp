@@ -7,7 +7,7 @@
 
 namespace twincell::cli {
 
-/// Notes the numbers of a scene with a scale that most likely have a wrong unit (implausible_numbers).
+/// Notes the numbers of a scene with a scale that most likely have a wrong unit (sim::doubtful_units).
 void note_units(const Common& common, const sim::Scene& scene);
 
 }  // namespace twincell::cli

@@ -17,7 +17,6 @@
 #include "cli/mpi_farm.hpp"
 #include "cli/output.hpp"
 #include "cli/profile.hpp"
-#include "cli/scene_notes.hpp"
 #include "cli/sweep_watch.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
@@ -26,9 +25,9 @@
 #include "core/output_rules.hpp"
 #include "core/plural.hpp"
 #include "sim/run/make_solver.hpp"
-#include "sim/scene/read_scene.hpp"
 #include "sweep/collect.hpp"
 #include "sweep/farm.hpp"
+#include "sweep/point_warnings.hpp"
 #include "sweep/results_figure.hpp"
 
 namespace twincell::cli {
@@ -65,12 +64,24 @@ sweep::Plan plan_of(const SweepOptions& options, const Common& common) {
   return plan;
 }
 
-/// Notes doubtful units of the first point; the others have the same scale.
-void note_units_of(const sweep::Schedule& schedule, const sweep::Plan& plan, const Common& common) {
-  for (const sweep::Curve& curve : schedule.curves())
-    for (const sweep::Point& point : curve.points)
-      return note_units(common, sim::read_scene_text(point.scene, plan.scene_name, {}, plan.scene_folder));
-}
+/// Prints warnings about the points, each kind of them once.
+class PointNotes {
+ public:
+  explicit PointNotes(const Common& common) : common_(common) {}
+  /// \returns all warnings so far
+  std::vector<std::string> note_new(const sweep::Schedule& schedule) {
+    std::vector<std::string> all;
+    for (const sweep::PointWarning& warning : sweep::warnings_of(schedule)) {
+      all.push_back(warning.sentence());
+      if (told_.insert(warning.kind).second) note(common_, all.back());
+    }
+    return all;
+  }
+
+ private:
+  const Common& common_;
+  std::set<std::string> told_;
+};
 
 /// Opens the folder of an existing sweep. \throws InputError if there is none
 sweep::Store store_of(const SweepOptions& options) {
@@ -134,7 +145,7 @@ void run_plan(const SweepOptions& options, const Common& common) {
   const sweep::Store store(folder_of(options));
   const sweep::Schedule schedule(plan, store);
   require_memory_together(schedule, common.n_threads(), "--threads");
-  note_units_of(schedule, plan, common);
+  const std::vector<std::string> warnings = PointNotes(common).note_new(schedule);
   for (const sweep::Curve& curve : schedule.curves())
     for (const sweep::Point& point : curve.points)
       if (const auto claim = store.claim(point)) store.announce(plan, point);
@@ -143,6 +154,7 @@ void run_plan(const SweepOptions& options, const Common& common) {
   note_foreign(schedule, store, common);
   nlohmann::json document = as_json(counts, store.folder(), schedule.all());
   document["repeats_left_out"] = schedule.repeats();
+  document["warnings"] = warnings;
   print_result(
       common, document,
       fmt::format("{} point{}{}, {} done, {:.3g} particle-steps left\n{}\n", counts.known,
@@ -191,9 +203,10 @@ void run_run(const SweepOptions& options, const Common& common) {
   const sweep::Store store(folder_of(options));
   std::optional<sweep::Schedule> schedule;
   if (!job || job->is_master()) schedule.emplace(plan, store, shard);
+  PointNotes notes(common);
   if (schedule) {
     note_repeats(*schedule, common);
-    note_units_of(*schedule, plan, common);
+    notes.note_new(*schedule);
     if (!job) require_memory_together(*schedule, workers.count, "--threads");
   }
   {
@@ -206,6 +219,7 @@ void run_run(const SweepOptions& options, const Common& common) {
   }
   if (!schedule) return;
   nlohmann::json document = as_json(schedule->counts(), store.folder(), schedule->all());
+  document["warnings"] = notes.note_new(*schedule);
   document["shard"] = options.shard.empty() ? "1/1" : options.shard;
   std::string text = collected_text(*schedule) + store.folder().string() + "\n";
   if (options.shard.empty() && schedule->all())

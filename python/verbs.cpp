@@ -8,6 +8,7 @@
 #include "sweep/collect.hpp"
 #include "sweep/farm.hpp"
 #include "sweep/plan.hpp"
+#include "sweep/point_warnings.hpp"
 
 namespace twincell::python {
 
@@ -67,16 +68,21 @@ std::string swept(const std::filesystem::path& plan_file, const std::optional<st
                   std::optional<std::uint64_t> seed, bool keep_trajectories, int threads,
                   const py::object& callback) {
   const int n_threads = threads_of(threads);
-  return unlocked(callback, [&](Progress& progress) {
+  std::vector<std::string> warnings;
+  std::string collected = unlocked(callback, [&](Progress& progress) {
     sweep::Plan plan = sweep::read_plan(plan_file);
+    warnings = plan.doubts;
     if (seed) plan.seed = *seed;
     const sweep::Store store(folder ? *folder : std::filesystem::path(plan_file).replace_extension(".sweep"));
     sweep::Schedule schedule(plan, store);
     sweep::require_memory_together(schedule, n_threads, "threads");
     ProgressWatch watch(progress);
     sweep::run_here({&schedule}, store, {n_threads, keep_trajectories}, watch);
+    for (const sweep::PointWarning& w : sweep::warnings_of(schedule)) warnings.push_back(w.sentence());
     return sweep::collected_json(schedule);
   });
+  for (const std::string& warning : warnings) warn(warning);
+  return collected;
 }
 
 }  // namespace

@@ -225,6 +225,11 @@ std::string table_of(const json& rows, const std::vector<std::string>& lead,
 
 }  // namespace
 
+std::string shown_value(const std::string& literal) {
+  const json value = value_of(literal);
+  return value.is_string() ? value.get<std::string>() : json_text(value);
+}
+
 std::string collected_json(const Schedule& schedule) {
   return json_text(document_of(schedule), 1) + "\n";
 }
@@ -275,12 +280,6 @@ std::string extremes(const std::vector<double>& values) {
   return first == last ? first : first + " ... " + last;
 }
 
-/// A value of an axis for people: 0.4 for 0.40000000000000002, the words without quotes.
-std::string shown(const std::string& literal) {
-  const json value = value_of(literal);
-  return value.is_string() ? value.get<std::string>() : json_text(value);
-}
-
 /// The cells of one row of grid_table: values of the axes, runs, phases, and the extremes of each number.
 std::vector<std::string> grid_row(const Curve& curve, const std::vector<std::string>& numbers) {
   std::map<std::string, std::size_t> phases;
@@ -308,7 +307,7 @@ std::vector<std::string> grid_row(const Curve& curve, const std::vector<std::str
     words.push_back(phases.size() > 1 ? fmt::format("{} {}", n, name) : name);
   if (failed > 0) words.push_back(fmt::format("{} failed", failed));
   std::vector<std::string> row;
-  for (const std::string& literal : curve.values) row.push_back(shown(literal));
+  for (const std::string& literal : curve.values) row.push_back(shown_value(literal));
   row.push_back(fmt::format("{}", done));
   row.push_back(words.empty() ? "-" : fmt::format("{}", fmt::join(words, ", ")));
   for (const auto& v : values) row.push_back(extremes(v));
@@ -400,7 +399,7 @@ std::string collected_text(const Schedule& schedule) {
     std::string place;
     for (std::size_t a = 0; a < plan.axes.size(); ++a)
       if (plan.axes[a].values.size() > 1)
-        place += fmt::format("{} = {}, ", plan.axes[a].key, shown(curve.values[a]));
+        place += fmt::format("{} = {}, ", plan.axes[a].key, shown_value(curve.values[a]));
     text += fmt::format("{}{} from {} {}{}\n", place, plan.criterion->name, plan.search->key,
                         curve.onset->text(), shortfall(curve, *plan.search));
   }

@@ -11,6 +11,10 @@
 
 namespace twincell::sweep {
 
+/// A value of an axis for people: 0.4 for 0.40000000000000002, the words without quotes.
+/// \param literal the value as TOML
+std::string shown_value(const std::string& literal);
+
 /// All results of a sweep as one JSON object:
 /// {"format", "plan": TOML of the plan, "seed": master seed, "points": [{"id", "axes": {key: value},
 /// "conditions": {"n_l", "gamma", "start"} (conditions.hpp), "replica", "seed", and every part of the result

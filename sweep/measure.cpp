@@ -41,6 +41,7 @@ Measured measure(sim::Simulation& run, analysis::AnalysisOptions options, const 
         return !(rule && rule->reached(frame)) && goes_on;
       },
       times);
+  measured.warnings = run.warnings();
   const sim::Scene& scene = run.scene();
   if (scene.until) rule.emplace(scene, live.info());
   const bool rests = run.settled().time > 0 && run.settled().energy_per_bead < analysis::kAtRest;

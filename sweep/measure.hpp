@@ -22,6 +22,7 @@ struct Measured {
   std::string until;                  ///< the precision reached, in a sentence
   std::optional<double> rest_height;  ///< centre-of-mass height of the resting bed before the drive, sigma
   std::optional<double> contact_fraction;
+  std::vector<std::string> warnings;  ///< of the run when the bed had settled (Simulation::warnings)
 };
 
 /// Callbacks before the first frame and with every frame. If `frame` returns false at the last phase of a

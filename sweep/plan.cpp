@@ -19,6 +19,7 @@
 #include "sim/scene/read_scene.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "sim/scene/scene.hpp"
+#include "sim/scene/unit_doubts.hpp"
 #include "sim/start/start.hpp"
 #include "sweep/measure.hpp"
 
@@ -287,6 +288,8 @@ Point make_point(const Plan& plan, const std::vector<std::string>& values, std::
   point.work = static_cast<double>(cost.steps) *
                static_cast<double>(std::max<std::size_t>(1, scene.n_beads.value_or(1)));
   point.memory = sim::resource_demand(scene, cost, scene.n_beads.value_or(0)).memory;
+  point.warnings = cost.warnings;
+  for (std::string& doubt : sim::doubtful_units(scene)) point.warnings.push_back(std::move(doubt));
   return point;
 }
 

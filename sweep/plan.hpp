@@ -73,6 +73,7 @@ struct Point {
   double work = 0;     ///< particle-steps
   /// Bytes that the run takes (sim/scene/resource_demand.hpp); 0 if a file states the beads.
   double memory = 0;
+  std::vector<std::string> warnings;  ///< sentences on the scene, as `explain` prints them
 };
 
 /// Makes the point of a plan at these values. Its seed is a hash of the master seed, the rest of the scene

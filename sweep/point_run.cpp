@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -94,6 +95,15 @@ double asked_of(const Plan& plan, const std::vector<analysis::Result>& results) 
   return result.value();
 }
 
+/// The warnings that only the run could give; those of its scene are known from the plan.
+std::vector<std::string> warnings_of_run(const sim::Plan& plan, const Measured& measured) {
+  std::vector<std::string> told;
+  for (const std::string& text : measured.warnings)
+    if (std::find(plan.warnings.begin(), plan.warnings.end(), text) == plan.warnings.end())
+      told.push_back(text);
+  return told;
+}
+
 }  // namespace
 
 std::string run_point(const Plan& plan, const Point& point, const std::filesystem::path& trajectory,
@@ -137,6 +147,7 @@ std::string run_point(const Plan& plan, const Point& point, const std::filesyste
     const Measured measured = measure(run, options, "point " + point.id, progress, observer, times);
     const auto& results = measured.results;
     if (writer) on_disk([&] { writer->finish(); });
+    if (const auto told = warnings_of_run(run.plan(), measured); !told.empty()) document["warnings"] = told;
     document["results"] = nlohmann::json::parse(analysis::results_json(results));
     if (measured.precise) document["until"] = {{"reached", *measured.precise}, {"text", measured.until}};
     if (measured.rest_height) document["rest_height"] = *measured.rest_height;

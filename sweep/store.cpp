@@ -65,6 +65,8 @@ void require_result(const JsonView& result, const Point& point) {
     (void)until->at("text").text();
   }
   if (const auto stopped = result.find("stopped")) (void)stopped->text();
+  if (const auto warnings = result.find("warnings"))
+    for (const JsonView& text : warnings->elements()) (void)text.text();
 }
 
 template <class Work>

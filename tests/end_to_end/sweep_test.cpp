@@ -425,6 +425,46 @@ TEST_F(Sweeps, SeedsThatChangeNothingAreRunOnceAndSaid) {
   EXPECT_TRUE(collected["pooled"].empty());
 }
 
+// As `explain` and `simulate` say them, but each once, with the points that it concerns.
+TEST_F(Sweeps, WarningsOfTheScenesAreSaidOnceWithTheirPoints) {
+  const std::string plan = at("doubtful.toml");
+  write(plan, R"(results = ["s_b"]
+[scene]
+preset = "fortini-huang-2015"
+cell.width = 6.0
+beads.layers = 3
+contact.k_t = 1000.0
+drive.start = "abrupt"
+time = { steps_per_contact = 6.37, discard = 0, cycles = 2, phases = 10 }
+[axes]
+drive.gamma = [1.05, 1.6]
+contact.mu = [0.0, 0.3]
+)");
+  const auto count = [](const std::string& text, const std::string& part) {
+    std::size_t n = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+    return n;
+  };
+  const std::string coarse = "time.steps_per_contact = 6.37 is below 20";
+  for (const char* verb : {"plan", "run"}) {
+    const Ran ran = run_program({"sweep", verb, plan, "--folder", at("doubtful"), "--json"});
+    ASSERT_EQ(ran.code, kDone) << ran.err;
+    EXPECT_EQ(count(ran.err, coarse), 1U) << ran.err;
+    EXPECT_NE(ran.err.find("may not rest. It concerns all 4 points of the plan."), std::string::npos);
+    EXPECT_NE(ran.err.find("contact.k_t has no effect: mu is 0 for all contacts. It concerns contact.mu = 0.0, "
+                           "drive.gamma = 1.05; contact.mu = 0.0, drive.gamma = 1.6."),
+              std::string::npos)
+        << ran.err;
+    const auto document = nlohmann::json::parse(ran.out);
+    EXPECT_GE(document["warnings"].size(), 2U) << document;
+  }
+  // What only the run can tell is in its result: the abrupt start of the drive.
+  const std::string blow = "the drive starts with a blow";
+  const Ran again = run_program({"sweep", "run", plan, "--folder", at("doubtful")});
+  EXPECT_EQ(count(again.err, blow), 1U) << again.err;
+  EXPECT_NE(again.err.find("and, with other numbers, 2 other points"), std::string::npos) << again.err;
+}
+
 TEST_F(Sweeps, WrongPlansAreRefusedInOneSentence) {
   const auto refused = [&](const std::string& text, const std::vector<std::string>& mentioned,
                            int code = kUsage) {
