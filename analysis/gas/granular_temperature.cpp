@@ -12,19 +12,20 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{.name = "T_g", .range = Range::not_negative, .main = true},
-                                    {.name = "T_x", .range = Range::not_negative, .main = true},
-                                    {.name = "T_y", .range = Range::not_negative},
-                                    {.name = "T_z", .range = Range::not_negative, .main = true},
-                                    {.name = "T", .range = Range::not_negative},
-                                    {.name = "T_z_eq5", .range = Range::not_negative},
-                                    {.name = "T_z_field", .range = Range::not_negative},
-                                    {.name = "T_bar_z", .range = Range::not_negative, .main = true},
-                                    {.name = "T_bar", .range = Range::not_negative},
-                                    {"T_z_tau"},
-                                    {"T_g_aliasing"},
-                                    {"T_z_aliasing"},
-                                    {"T_g_sampling"}};
+constexpr NamedResult kResults[] = {
+    {.name = "T_g", .range = Range::not_negative, .main = true},
+    {.name = "T_x", .range = Range::not_negative, .main = true},
+    {.name = "T_y", .range = Range::not_negative},
+    {.name = "T_z", .range = Range::not_negative, .main = true},
+    {.name = "T", .range = Range::not_negative},
+    {.name = "T_z_eq5", .range = Range::not_negative},
+    {.name = "T_z_field", .range = Range::not_negative},
+    {.name = "T_bar_z", .range = Range::not_negative, .main = true, .over_peak_velocity = 2},
+    {.name = "T_bar", .range = Range::not_negative, .over_peak_velocity = 2},
+    {"T_z_tau"},
+    {"T_g_aliasing"},
+    {"T_z_aliasing"},
+    {"T_g_sampling"}};
 
 const char* const kPaper1 = "Fortini & Huang 2015, eq. 2";
 const char* const kPaper2 = "Bhateja et al. 2016, eq. 5 and Table III";

@@ -9,8 +9,8 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {{.name = "phi_top", .range = Range::share},
-                                    {.name = "phi_cm", .range = Range::share, .main = true}};
+constexpr NamedResult kResults[] = {{.name = "phi_top", .range = Range::share, .filling = true},
+                                    {.name = "phi_cm", .range = Range::share, .main = true, .filling = true}};
 
 const char* const kSource = "Bhateja, Sharma & Singh 2016, sec. IV";
 

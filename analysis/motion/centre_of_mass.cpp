@@ -15,7 +15,7 @@ constexpr NamedResult kResults[] = {{.name = "h_cm", .main = true},
                                     {"h_cm_k"},
                                     {"h_cm_j"},
                                     {.name = "delta_h_cm", .main = true},
-                                    {"delta_h_bar"}};
+                                    {.name = "delta_h_bar", .over_peak_velocity = 2}};
 
 const char* const kSource = "Bhateja, Sharma & Singh 2016, Table II and Fig. 7";
 

@@ -206,6 +206,10 @@ struct NamedResult {
   /// Number of the definition; raised by one whenever the definition changes, so that stored results of the
   /// earlier one are not mixed with new ones.
   int definition = 1;
+  /// The share of beads of known size of a volume that is measured: as the power -dimension of lengths.
+  bool filling = false;
+  /// The power of the peak velocity of the drive over which it is: 2 of T_bar = T/(m V_p^2).
+  int over_peak_velocity = 0;
 };
 
 /// One observable: its results and its factory. NAME.cpp defines NAME_observable, the list in observables.cpp

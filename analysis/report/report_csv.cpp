@@ -37,13 +37,15 @@ std::vector<std::string> scalar_names(const std::vector<Run>& runs) {
 
 std::string runs_csv(const std::vector<Run>& runs) {
   const auto names = scalar_names(runs);
-  std::string text = "side,run,start,gamma,k_m,n_l,n_beads,n_frames,phase";
+  std::string text = "side,run,start,gamma,gamma_error,k_m,k_m_error,n_l,n_beads,n_frames,phase";
   for (const std::string& name : names) text += fmt::format(",{0},{0}_low,{0}_high", name);
   text += "\n";
   for (const Run& run : runs) {
-    text += fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{},{},{}", side_name(run.side), csv_field(run.name),
-                        csv_field(run.start), run.gamma, run.k_m, run.n_l, run.n_beads, run.n_frames,
-                        phase_name(run.phase));
+    const double by_drive = run.drive_error().value_or(std::numeric_limits<double>::quiet_NaN());
+    text += fmt::format("{},{},{},{:.9g},{},{:.9g},{},{:.9g},{},{},{}", side_name(run.side),
+                        csv_field(run.name), csv_field(run.start), run.gamma,
+                        csv_number(by_drive * run.gamma), run.k_m, csv_number(2 * by_drive * run.k_m),
+                        run.n_l, run.n_beads, run.n_frames, phase_name(run.phase));
     for (const std::string& name : names) {
       const Result* r = seek_result(run.results, name);
       text += fmt::format(",{}", csv_number(value_of(r)));
@@ -58,17 +60,17 @@ std::string runs_csv(const std::vector<Run>& runs) {
 std::string differences_csv(const Comparison& c) {
   std::string text =
       "gamma,n_l,number,unit,experiment,experiment_error,simulation,simulation_error,difference,filmed,"
-      "camera,statistics,seeds,tracers,scale,defects,remainder,error,attribution\n";
+      "camera,statistics,seeds,tracers,scale,drive,defects,remainder,error,attribution\n";
   const auto part = [](const std::optional<double>& v) {
     return csv_number(v.value_or(std::numeric_limits<double>::quiet_NaN()));
   };
   for (const Difference& d : c.differences)
-    text += fmt::format("{:.9g},{:.9g},{},{},{:.9g},{},{:.9g},{},{:.9g},{},{},{},{},{},{},{},{:.9g},{},{}\n",
-                        c.matches[d.match].gamma, c.matches[d.match].n_l, d.quantity, d.unit,
-                        d.experiment.value, part(d.experiment.error), d.simulation.value,
-                        part(d.simulation.error), d.difference(), part(d.filmed), part(d.camera),
-                        part(d.statistics), part(d.seeds), part(d.tracers), part(d.scale), part(d.defects),
-                        d.remainder(), part(d.error()), csv_field(d.attribution()));
+    text += fmt::format(
+        "{:.9g},{:.9g},{},{},{:.9g},{},{:.9g},{},{:.9g},{},{},{},{},{},{},{},{},{:.9g},{},{}\n",
+        c.matches[d.match].gamma, c.matches[d.match].n_l, d.quantity, d.unit, d.experiment.value,
+        part(d.experiment.error), d.simulation.value, part(d.simulation.error), d.difference(),
+        part(d.filmed), part(d.camera), part(d.statistics), part(d.seeds), part(d.tracers), part(d.scale),
+        part(d.drive), part(d.defects), d.remainder(), part(d.error()), csv_field(d.attribution()));
   return text;
 }
 

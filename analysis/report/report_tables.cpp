@@ -104,6 +104,7 @@ std::string composition(const Difference& d) {
   add("seeds ±", d.seed_error());
   add("tracers ±", d.tracers);
   add("scale ±", d.scale);
+  add("drive ±", d.drive);
   add("between starts", d.defects);
   return parts.empty() ? "–" : fmt::format("{}", fmt::join(parts, "; "));
 }

@@ -87,16 +87,17 @@ std::optional<Measured> measured(const std::vector<Run>& runs, const std::vector
   return m;
 }
 
-/// Error of a number of the experiments by the errors of their scales, which one camera and cell share.
-std::optional<double> error_by_scale(const std::vector<Run>& runs, const Match& match, const Result& number,
-                                     double value) {
+/// Error of a number of the experiments by a relative error that they share, as those of one camera and cell
+/// do: |power value| times the mean of the relative errors.
+/// \param power of what is in error, in the number
+std::optional<double> error_by(std::optional<double> Run::*relative, double power,
+                               const std::vector<Run>& runs, const Match& match, double value) {
   double sum = 0;
   bool any = false;
   for (const std::size_t i : match.experiments) {
-    any = any || runs[i].scale_error;
-    sum += runs[i].scale_error.value_or(0);
+    any = any || runs[i].*relative;
+    sum += (runs[i].*relative).value_or(0);
   }
-  const double power = length_power(number.unit);
   if (!any || power == 0) return std::nullopt;
   return std::abs(power * value) * sum / static_cast<double>(match.experiments.size());
 }
@@ -160,9 +161,9 @@ class Marked : public TrajectorySource {
 }  // namespace
 
 std::optional<double> Difference::error() const {
-  // The scale alone says nothing of the scatter.
+  // Scale and drive alone say nothing of the scatter.
   if (!statistics && !seeds && !tracers) return std::nullopt;
-  return in_quadrature({statistics, seed_error(), tracers, scale});
+  return in_quadrature({statistics, seed_error(), tracers, scale, drive});
 }
 
 std::optional<double> Difference::seed_error() const {
@@ -216,7 +217,8 @@ std::string Difference::attribution() const {
     const std::pair<const char*, std::optional<double>> sources[] = {{"statistics", statistics},
                                                                      {"seeds", seed_error()},
                                                                      {"choice of tracers", tracers},
-                                                                     {"scale", scale}};
+                                                                     {"scale", scale},
+                                                                     {"amplitude of the drive", drive}};
     const auto largest = std::max_element(
         std::begin(sources), std::end(sources),
         [](const auto& a, const auto& b) { return a.second.value_or(0) < b.second.value_or(0); });
@@ -318,7 +320,9 @@ std::vector<Difference> find_differences(const std::vector<Run>& runs, const std
       }
       d.statistics = in_quadrature({experiment->error, other_error});
       d.tracers = spread_over_lines(checks, match, r.name);
-      d.scale = error_by_scale(runs, match, r, experiment->value);
+      d.scale = error_by(&Run::scale_error, length_power(r, runs[match.experiments.front()].box.dimension),
+                         runs, match, experiment->value);
+      d.drive = error_by(&Run::amplitude_error, amplitude_power(r), runs, match, experiment->value);
       compare_simulations(runs, match, d);
       // The scatter between seeds contains that within a simulation.
       if (!experiment->error && (other_error || d.seeds || d.tracers))
@@ -357,14 +361,14 @@ std::string differences_text(const std::vector<Difference>& differences, const s
     return v ? fmt::format("{:.3g}", *v) : std::string("-");
   };
   const Conditions conditions(matches);
-  std::string text = fmt::format("{}  {:<22}{:>11}{:>11}{:>11}{:>10}{:>10}{:>10}{:>10}{:>10}  {}\n",
+  std::string text = fmt::format("{}  {:<22}{:>11}{:>11}{:>11}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}  {}\n",
                                  conditions.head(), "number", "experiment", "simulation", "difference",
-                                 "camera", "statist.", "seeds", "tracers", "scale", "attributed to");
+                                 "camera", "statist.", "seeds", "tracers", "scale", "drive", "attributed to");
   for (const Difference& d : differences)
-    text += fmt::format("{}  {:<22}{:>11.4g}{:>11.4g}{:>11.3g}{:>10}{:>10}{:>10}{:>10}{:>10}  {}\n",
+    text += fmt::format("{}  {:<22}{:>11.4g}{:>11.4g}{:>11.3g}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}  {}\n",
                         conditions.of(matches[d.match]), d.quantity, d.experiment.value, d.simulation.value,
                         d.difference(), part(d.camera), part(d.statistics), part(d.seeds), part(d.tracers),
-                        part(d.scale), d.attribution());
+                        part(d.scale), part(d.drive), d.attribution());
   return text;
 }
 

@@ -41,6 +41,7 @@ struct Difference {
   std::size_t seed_runs = 0;          ///< simulations of that start
   std::optional<double> tracers;      ///< standard deviation of E - S over three lines of tracers
   std::optional<double> scale;        ///< error of E by the stated error of the scale of its pictures
+  std::optional<double> drive;        ///< error of E by that of the amplitude of the drive in the film
   std::optional<double> defects;  ///< largest difference between the means of simulations of different starts
   double significant = 2;  ///< number of errors above which it is real, set by find_differences for all
 
@@ -51,8 +52,8 @@ struct Difference {
   /// seeds, widened by t/1.96 (Student's t, n - 1 degrees of freedom) because n runs give an uncertain s. The
   /// result is 7.9 s for two runs, 2.5 s for three, 1.2 s for ten.
   [[nodiscard]] std::optional<double> seed_error() const;
-  /// Statistics, seeds, tracers and scale added in quadrature, as far as they are known; absent if none of
-  /// the first three is known.
+  /// Statistics, seeds, tracers, scale and drive added in quadrature, as far as they are known; absent if
+  /// none of the first three is known.
   [[nodiscard]] std::optional<double> error() const;
   /// remainder / error; absent without an error, and if one side has none.
   [[nodiscard]] std::optional<double> in_errors() const;

@@ -27,4 +27,12 @@ double length_power(const std::string& unit) {
   return power;
 }
 
+double length_power(const Result& result, int dimension) {
+  return named_result(result.name).filling ? -dimension : length_power(result.unit);
+}
+
+double amplitude_power(const Result& result) {
+  return -named_result(result.name).over_peak_velocity;
+}
+
 }  // namespace twincell::analysis

@@ -64,6 +64,11 @@ Run analyze_run(const TrajectorySource& trajectory, Side side, const AnalysisOpt
   return run;
 }
 
+std::optional<double> Run::drive_error() const {
+  if (!amplitude_error) return std::nullopt;
+  return std::hypot(*amplitude_error, scale_error.value_or(0));
+}
+
 std::vector<Match> match_runs(const std::vector<Run>& runs, double tolerance) {
   std::vector<std::size_t> order(runs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

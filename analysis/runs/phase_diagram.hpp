@@ -46,7 +46,10 @@ struct Run {
   std::size_t n_beads = 0;  ///< N
   std::size_t n_frames = 0;
   std::optional<double> scale_error;  ///< relative standard error of the pixels per sigma, if it is stated
-  int phases_per_cycle = 0;           ///< N_k; 0: not phase-locked
+  /// Relative standard error of the amplitude A of the drive in the film, without that of the scale, if it
+  /// was measured there.
+  std::optional<double> amplitude_error;
+  int phases_per_cycle = 0;  ///< N_k; 0: not phase-locked
   BedPhase phase = BedPhase::undetermined;
   std::vector<Result> results;
   double cutoff = 0;  ///< neighbour cutoff of the bond order, sigma
@@ -55,6 +58,10 @@ struct Run {
   std::vector<std::size_t> tracers;  ///< slots
   Snapshot first, last;              ///< first and last frame at phase 0
   Show show;
+
+  /// Relative standard error of A/sigma by the film and its scale; absent if A was not measured. That of
+  /// Gamma is the same, those of K_m and S = A^2 omega^2/(sigma g) are twice as large.
+  [[nodiscard]] std::optional<double> drive_error() const;
 };
 
 /// Analyses a trajectory and places it in the phase diagram.

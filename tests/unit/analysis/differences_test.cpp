@@ -134,6 +134,28 @@ TEST(Differences, TheErrorOfTheScaleIsPartOfTheErrorOfALength) {
   EXPECT_TRUE(only(runs).is_real());
 }
 
+// phi_cm has no unit, but is an area over an area that is measured; T_bar is over the square of A omega.
+TEST(Differences, ErrorsOfScaleAndDriveAreCarriedIntoNumbersWithoutUnit) {
+  Runs runs = {run(Side::experiment, 0.5, 1e-4), run(Side::simulation, 0.5, 1e-4)};
+  runs[0].scale_error = 1e-3;
+  runs[0].amplitude_error = 2e-3;
+  const auto rename = [&](const char* name) {
+    for (auto& r : runs) r.results[0].name = name, r.results[0].unit = "1";
+  };
+  rename("phi_cm");
+  EXPECT_NEAR(only(runs).scale.value(), 1e-3, 1e-9);
+  EXPECT_FALSE(only(runs).drive);
+  rename("T_bar");
+  EXPECT_FALSE(only(runs).scale);
+  EXPECT_NEAR(only(runs).drive.value(), 2e-3, 1e-9);
+  EXPECT_NEAR(only(runs).error().value(), std::hypot(2e-3, only(runs).statistics.value()), 1e-9);
+  rename("q6");
+  EXPECT_FALSE(only(runs).scale);
+  EXPECT_FALSE(only(runs).drive);
+  EXPECT_NEAR(runs[0].drive_error().value(), std::hypot(1e-3, 2e-3), 1e-12);
+  EXPECT_FALSE(runs[1].drive_error());
+}
+
 // The scale says nothing of the scatter of the numbers.
 TEST(Differences, TheErrorOfTheScaleAloneIsNoError) {
   Runs runs = {run(Side::experiment, 4, 0), run(Side::simulation, 3, 0)};
