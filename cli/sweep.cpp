@@ -165,15 +165,16 @@ void run_plan(const SweepOptions& options, const Common& common) {
                   counts.done, counts.work_left, store.folder().string()));
 }
 
-Product figures_folder() {
-  return Product::shared_folder("the figures of a sweep", analysis::figure_files("sweep"));
+/// \param files that are certainly written
+Product figures_folder(std::vector<std::string> files = {}) {
+  return Product::shared_folder("the figures of a sweep", std::move(files));
 }
 
 /// Draws a result into `folder`. \returns the path of the SVG
 std::string draw_results(const sweep::Schedule& schedule, const sweep::FigureOptions& options,
                          const fs::path& folder) {
   const analysis::Figure figure = sweep::results_figure(collected_json(schedule), options);
-  AtomicPath output(folder, figures_folder());
+  AtomicPath output(folder, figures_folder(analysis::figure_files(figure.name)));
   analysis::draw(figure, output.part());
   output.commit();
   return (folder / (figure.name + ".svg")).string();

@@ -306,6 +306,13 @@ std::string onset_label(const json& onset) {
 
 }  // namespace
 
+std::string results_figure_name(const FigureOptions& options) {
+  std::string name = "sweep";
+  if (!options.result.empty()) name += "-" + options.result;
+  if (!options.over.empty()) name += fmt::format("-over-{}", fmt::join(options.over, "-"));
+  return name;
+}
+
 analysis::Figure results_figure(const std::string& collected, const FigureOptions& options) {
   constexpr std::size_t kMaxAxes = 2;
   if (options.over.size() > kMaxAxes)
@@ -334,7 +341,7 @@ analysis::Figure results_figure(const std::string& collected, const FigureOption
     for (const auto& end : {v.value, v.low, v.high})
       if (end) y_axis.show(*end);
   }
-  analysis::Figure f{.name = "sweep", .width = 620, .height = 500};
+  analysis::Figure f{.name = results_figure_name(options), .width = 620, .height = 500};
   const std::string clauses = plot_curves(curves_of(values, x, order), f);
   if (clauses.empty())
     throw InputError({.file = {}, .key = "the sweep"},

@@ -19,7 +19,11 @@ struct FigureOptions {
   std::vector<std::string> over;
 };
 
-/// "sweep": the result with its intervals against the first axis, one curve for each value of the other axes.
+/// Name of the figure: "sweep" with the options that are chosen, as "sweep-s_b-over-drive.gamma". A figure
+/// of other options has another name, so that neither replaces the other.
+std::string results_figure_name(const FigureOptions& options);
+
+/// The result with its intervals against the first axis, one curve for each value of the other axes.
 /// Points that differ only in the seed are shown by their pooled value. An onset with one limit only is a
 /// triangle that points to where it lies.
 /// \param collected text of collected_json()

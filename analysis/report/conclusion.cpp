@@ -25,8 +25,8 @@ std::string phases_of(const std::vector<Run>& runs, const std::vector<std::size_
 
 namespace {
 
-/// How many numbers really differ, and the first of them by name.
-std::string real_differences(const Comparison& c) {
+/// How many numbers really differ, the first of them by name, and what their errors leave out.
+std::vector<std::string> real_differences(const Comparison& c) {
   constexpr std::size_t kMaxNamed = 5;
   const bool heights = heights_of(c.matches).size() > 1;
   std::vector<std::string> names;
@@ -40,29 +40,30 @@ std::string real_differences(const Comparison& c) {
   }
   if (c.differences.empty()) return {};
   if (names.empty())
-    return fmt::format("None of the {} compared numbers really differs{}.", c.differences.size(),
-                       without_error > 0 ? fmt::format("; of {} no error is known", without_error) : "");
+    return {fmt::format("None of the {} compared numbers really differs{}.", c.differences.size(),
+                        without_error > 0 ? fmt::format("; of {} no error is known", without_error) : "")};
   const std::size_t n = names.size();
   if (n > kMaxNamed) names.resize(kMaxNamed);
-  std::string text =
-      fmt::format("{} of the {} compared numbers really differ{}: {}{}.", n, c.differences.size(),
-                  n == 1 ? "s" : "", fmt::join(names, heights ? "; " : ", "),
-                  n > kMaxNamed ? fmt::format(" and {} more", n - kMaxNamed) : "");
+  std::vector<std::string> text = {
+      fmt::format("{} of the {} compared numbers really differ{}.", n, c.differences.size(),
+                  n == 1 ? "s" : ""),
+      fmt::format("{} {}{}.", n == 1 ? "It is" : "They are", fmt::join(names, heights ? "; " : ", "),
+                  n > kMaxNamed ? fmt::format(" and {} more", n - kMaxNamed) : "")};
   const std::size_t compared = c.differences.size() - without_error;
   if (static_cast<double>(compared) * kFalseShare >= 1)
-    text += fmt::format(
-        " Among {} numbers with known errors, a difference counts from {:.2g} errors on, so that at "
-        "most about {:.0f} % of such differences are chance.",
-        compared, c.differences.front().significant, 100 * kFalseShare);
+    text.push_back(
+        fmt::format("Among {} numbers with known errors, a difference counts from {:.2g} errors on, so that "
+                    "at most about {:.0f} % of such differences are chance.",
+                    compared, c.differences.front().significant, 100 * kFalseShare));
   if (not_filmed == n)
-    text +=
-        fmt::format(" Nothing was filmed, so that camera and tracking may cause {}.", n == 1 ? "it" : "them");
+    text.push_back(
+        fmt::format("Nothing was filmed, so that camera and tracking may cause {}.", n == 1 ? "it" : "them"));
   if (without_seeds > 0)
-    text += fmt::format(
-        " The error of {} contains no scatter between seeds, as there is one simulation of each start: other "
+    text.push_back(fmt::format(
+        "The error of {} contains no scatter between seeds, as there is one simulation of each start: other "
         "seeds may differ as much.",
         without_seeds == n ? (n == 1 ? std::string("this") : "these")
-                           : fmt::format("{} of these", without_seeds));
+                           : fmt::format("{} of these", without_seeds)));
   return text;
 }
 
@@ -80,11 +81,12 @@ std::string doubts_of(const std::vector<Run>& runs, const Match& match) {
   return fmt::format("{}", fmt::join(sides, "; "));
 }
 
-std::string conclusion_of_sweep(const Comparison& c) {
-  std::string text = fmt::format("The diagram shows {} of a sweep.", plural(c.sweep.size(), "point"));
+std::vector<std::string> conclusion_of_sweep(const Comparison& c) {
+  std::vector<std::string> text = {
+      fmt::format("The diagram shows {} of a sweep.", plural(c.sweep.size(), "point"))};
   for (const PhaseBoundary& b : c.boundaries)
-    text += fmt::format(" Onset of {} ({}, N_l = {:.3g}): Gamma {}.", onset_name(b.onset), boundary_of(b),
-                        b.n_l, boundary_text(b));
+    text.push_back(fmt::format("Onset of {} ({}, N_l = {:.3g}): Gamma {}.", onset_name(b.onset),
+                               boundary_of(b), b.n_l, boundary_text(b)));
   return text;
 }
 
@@ -93,7 +95,7 @@ std::string conclusion_of_sweep(const Comparison& c) {
 std::vector<std::string> conclusion_sentences(const Comparison& c) {
   const std::vector<Run>& runs = c.runs;
   const std::vector<Match>& matches = c.matches;
-  if (runs.empty() && (!c.sweep.empty() || !c.boundaries.empty())) return {conclusion_of_sweep(c)};
+  if (runs.empty() && (!c.sweep.empty() || !c.boundaries.empty())) return conclusion_of_sweep(c);
   const bool heights = heights_of(matches).size() > 1;
   std::vector<std::string> differ, undecided, open;
   std::size_t paired = 0, same = 0;
@@ -125,7 +127,7 @@ std::vector<std::string> conclusion_sentences(const Comparison& c) {
   if (!undecided.empty()) text.push_back(fmt::format("Undecided at {}.", fmt::join(undecided, "; ")));
   if (!open.empty()) text.push_back(fmt::format("Undetermined at {}.", fmt::join(open, "; ")));
   for (std::string& onset : onset_sentences(c.boundaries)) text.push_back(std::move(onset));
-  if (const std::string real = real_differences(c); !real.empty()) text.push_back(real);
+  for (std::string& real : real_differences(c)) text.push_back(std::move(real));
   return text;
 }
 

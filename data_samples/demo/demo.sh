@@ -37,5 +37,6 @@ echo "demo: filming the twins, comparing" >&2
   --simulation "$work"/{six,ten}-layers-{0.9,1.6,2.8}/simulation-{1,2,3}.h5 \
   --sweep "$here"/boundaries/{bouncing,convecting}.json -o "$report" --camera "$here/CAMERA.toml" \
   >"$work/comparison.txt" 2>"$work/log/comparison.txt" || { cat "$work/log/comparison.txt" >&2; exit 1; }
-# The conclusion, the phases and where the report is; onsets and single differences are in the report.
-sed '/^onset of /,/other numbers* agree/d' "$work/comparison.txt"
+# Ten lines: what agrees, the phases, and where the report is. Onsets and single differences are in the report.
+sed -n '/^Same phase/p; /^They differ/p; /really differ/p; /^  Gamma .*verdict$/,/^onset of /{/^onset of /!p}; /^report: /p' \
+  "$work/comparison.txt"

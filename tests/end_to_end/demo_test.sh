@@ -9,6 +9,8 @@ while IFS=, read -r gamma n_l experiment simulation; do
   grep -Eq "^ *$gamma(0*) .* $n_l[.]00 +$experiment +$simulation +same$" <<<"$said" ||
     { echo "Gamma = $gamma, N_l = $n_l is not $experiment / $simulation in:"; echo "$said"; exit 1; }
 done <"$1/data_samples/demo/expected.csv"
+[ "$(wc -l <<<"$said")" -eq 10 ] && ! grep -v '^report: ' <<<"$said" | grep -q '.\{101\}' ||
+  { echo "These are not ten lines of at most 100 columns:"; echo "$said"; exit 1; }
 grep -q "^report: $report/report.html$" <<<"$said"
 [ -s "$report/report.html" ]
 ! grep -Eq '(src|href)="https?://' "$report/report.html"

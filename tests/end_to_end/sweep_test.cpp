@@ -91,8 +91,17 @@ TEST_F(Sweeps, ASweepEndsInItsPictureAndPlotDrawsOtherResults) {
   const Ran plot = run_program({"sweep", "plot", grid_, "--folder", at("one"), "--figures", at("s_b"),
                                 "--result", "s_b", "--over", "drive.gamma", "start.kind"});
   ASSERT_EQ(plot.code, kDone) << plot.err;
-  EXPECT_NE(bytes_of(at("s_b/sweep.gp")).find("start.kind = \"random\""), std::string::npos);
-  EXPECT_NE(bytes_of(at("s_b/sweep.dat")), drawn);
+  const std::string name = "sweep-s_b-over-drive.gamma-start.kind";
+  EXPECT_NE(bytes_of(at("s_b/" + name + ".gp")).find("start.kind = \"random\""), std::string::npos);
+  // In the folder of the sweep, the picture of one result leaves that of another as it is.
+  ASSERT_EQ(run_program({"sweep", "plot", grid_, "--folder", at("one"), "--result", "s_b"}).code, kDone);
+  EXPECT_NE(bytes_of(at("one/figures/sweep-s_b.dat")), drawn);
+  EXPECT_EQ(bytes_of(at("one/figures/sweep.dat")), drawn);
+  write(at("one/figures/sweep-s_c.svg"), "of the user");
+  const Ran foreign = run_program({"sweep", "plot", grid_, "--folder", at("one"), "--result", "s_c"});
+  EXPECT_EQ(foreign.code, kUsage);
+  EXPECT_NE(foreign.err.find("'sweep-s_c.svg' in it was not written by twincell"), std::string::npos)
+      << foreign.err;
   const Ran wrong = run_program({"sweep", "plot", grid_, "--folder", at("one"), "--result", "s_d"});
   EXPECT_EQ(wrong.code, kUsage);
   EXPECT_NE(wrong.err.find("it has s_b, s_c"), std::string::npos) << wrong.err;
@@ -451,9 +460,10 @@ contact.mu = [0.0, 0.3]
     ASSERT_EQ(ran.code, kDone) << ran.err;
     EXPECT_EQ(count(ran.err, coarse), 1U) << ran.err;
     EXPECT_NE(ran.err.find("may not rest. It concerns all 4 points of the plan."), std::string::npos);
-    EXPECT_NE(ran.err.find("contact.k_t has no effect: mu is 0 for all contacts. It concerns contact.mu = 0.0, "
-                           "drive.gamma = 1.05; contact.mu = 0.0, drive.gamma = 1.6."),
-              std::string::npos)
+    EXPECT_NE(
+        ran.err.find("contact.k_t has no effect: mu is 0 for all contacts. It concerns contact.mu = 0.0, "
+                     "drive.gamma = 1.05; contact.mu = 0.0, drive.gamma = 1.6."),
+        std::string::npos)
         << ran.err;
     const auto document = nlohmann::json::parse(ran.out);
     EXPECT_GE(document["warnings"].size(), 2U) << document;

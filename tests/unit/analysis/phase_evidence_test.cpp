@@ -115,6 +115,17 @@ TEST(PhaseEvidence, OnsetsAndTheConclusionLeaveAnUndecidedPointOpen) {
             "the experiment and above 1 in the twins, not bracketed on either side.");
 }
 
+TEST(PhaseEvidence, TheConclusionOfASweepOpensWithOneShortSentence) {
+  Comparison c;
+  c.sweep = {{}, {}};
+  c.boundaries =
+      find_boundaries({run(Side::simulation, 1, kRests, kHolds), run(Side::simulation, 2, kBounces, kHolds)});
+  const auto sentences = conclusion_sentences(c);
+  ASSERT_EQ(sentences.size(), 1 + c.boundaries.size());
+  EXPECT_EQ(sentences.front(), "The diagram shows 2 points of a sweep.");
+  EXPECT_EQ(sentences.at(1).find("Onset of bouncing"), 0U) << sentences.at(1);
+}
+
 // What rests on one side and may bounce or convect on the other differs in any case.
 TEST(PhaseEvidence, SidesWithoutACommonPhaseDiffer) {
   const Runs runs = {run(Side::experiment, 2, kRests, kHolds),

@@ -29,6 +29,14 @@ TEST(ResultsFigure, SeedsArePooledAndCurvesAreSortedAlongTheAxis) {
   EXPECT_EQ(f.title, "s_b against drive.gamma");
 }
 
+// Otherwise the picture of one result would replace that of another in the same folder.
+TEST(ResultsFigure, IsNamedAfterItsOptions) {
+  EXPECT_EQ(results_figure(kGrid).name, "sweep");
+  EXPECT_EQ(results_figure(kGrid, {.result = "s_b", .over = {}}).name, "sweep-s_b");
+  EXPECT_EQ(results_figure(kGrid, {.result = "s_b", .over = {"drive.gamma", "beads.layers"}}).name,
+            "sweep-s_b-over-drive.gamma-beads.layers");
+}
+
 TEST(ResultsFigure, OnsetsAreTheDefaultAndLimitsAreTriangles) {
   const analysis::Figure f = results_figure(R"({"points": [], "onsets": [
     {"axes": {"beads.layers": 20}, "key": "drive.gamma", "verdict": "convecting", "value": 2.1, "low": 2.0, "high": 2.3},
