@@ -101,7 +101,10 @@ AnalysisContext make_context(const TrajectorySource& trajectory, const AnalysisO
   std::size_t index = 0;
   trajectory.read(index, frame);
   if (info.columns.phase)
-    while (frame.phase != 0 && index + 1 < trajectory.n_frames()) trajectory.read(++index, frame);
+    while (frame.phase != 0 && index + 1 < trajectory.n_frames()) {
+      throw_if_cancelled();
+      trajectory.read(++index, frame);
+    }
   if (info.columns.phase && frame.phase != 0) trajectory.read(0, frame);
 
   const TracerChoice choice = choose_tracers(info, frame, {options.tracers, options.tracer_band});
@@ -193,6 +196,7 @@ Used add_frames(const TrajectorySource& trajectory, const AnalysisContext& conte
     ++used.frames;
     const FrameView view(frame, context);
     for (const auto& [name, observable] : chosen) {
+      throw_if_cancelled();
       Stage adding(times, name, "bead-frames");
       observable->add(view);
       adding.count(static_cast<double>(frame.position.size()), bytes_needed(frame));

@@ -26,6 +26,7 @@
 #include "cli/trajectory_notes.hpp"
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
+#include "core/cancellation.hpp"
 #include "core/error.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 #include "trajectory/plate.hpp"
@@ -94,6 +95,7 @@ double rest_height_of(const std::string& said, const std::vector<std::string>& r
   double sum = 0, low = INFINITY, high = -INFINITY;
   Frame frame;
   for (std::size_t f = 0; f < trajectory.n_frames(); ++f) {
+    throw_if_cancelled();
     trajectory.read(f, frame);
     const auto plate = plate_height(trajectory.info(), frame);
     const double height = centre_of_mass_height(frame, trajectory.info().mass) - plate.value_or(std::nan(""));

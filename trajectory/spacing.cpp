@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/cancellation.hpp"
 #include "core/median.hpp"
 
 namespace twincell {
@@ -43,6 +44,7 @@ std::size_t listed_again(std::span<const Vec3> centres, double distance) {
   }
   std::ranges::sort(sorted, {}, &InCell::cell);
   const auto has_earlier = [&](const InCell& b) {
+    throw_if_cancelled();
     for (std::int64_t dx = -1; dx <= 1; ++dx)
       for (std::int64_t dy = -1; dy <= 1; ++dy) {
         // Cells that differ in z alone follow each other.

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/cancellation.hpp"
+
 namespace twincell::analysis {
 namespace {
 
@@ -124,6 +126,7 @@ Neighbours find_neighbours(const Frame& frame, const Box& box, double cutoff) {
   for (std::size_t i = 0; i < n; ++i) {
     result.first[i] = result.index.size();
     if (next == beads.end() || *next != i) continue;
+    throw_if_cancelled();
     ++next;
     found.clear();
     const Cell& home = cell[i];

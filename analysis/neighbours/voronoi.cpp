@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/cancellation.hpp"
+
 namespace twincell::analysis {
 namespace {
 
@@ -67,6 +69,7 @@ VoronoiCells voronoi_cells(const Frame& frame, const Box& box, double radius) {
   cells.neighbours.first.assign(n + 1, 0);
   cells.enclosed.assign(n, 0);
   for (std::size_t i = 0; i < n; ++i) {
+    throw_if_cancelled();
     bool rim = false;
     for (std::size_t e = near.first[i]; e < near.first[i + 1]; ++e) {
       const std::size_t j = near.index[e];

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "analysis/observable/array_with_interval.hpp"
+#include "core/cancellation.hpp"
 #include "core/constants.hpp"
 #include "trajectory/bed_window.hpp"
 
@@ -57,6 +58,7 @@ class PairCorrelation : public Observable {
     const Neighbours pairs = find_neighbours(frame, info_.box, farthest_ + kRounding);
     std::vector<std::size_t> references(kBins, 0), found(kBins, 0);
     for (std::size_t i = 0; i < frame.position.size(); ++i) {
+      throw_if_cancelled();
       if (!frame.present(i) || !frame.position[i].allFinite()) continue;
       const double depth = std::min(window.depth(frame.position[i]), farthest_);
       if (!(depth >= outer_edge(0) - kRounding)) continue;
