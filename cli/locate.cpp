@@ -139,7 +139,7 @@ void run(LocateOptions& o, const Common& common) {
   imaging::FramesAhead ahead(seen);
   const imaging::LocatorConfiguration found = find_settings(ahead, given, o, common);
   const imaging::LocatorOptions& locator = found.locator;
-  const imaging::SettingsChoice& choice = found.choice;
+  const imaging::SettingsChoice choice = imaging::in_whole_picture(found.choice, region);
 
   std::optional<LocateView> view;
   if (!o.view.empty()) view.emplace(o.locating, region, locator, choice);

@@ -79,7 +79,7 @@
     return element;
   };
   function words(c, verdict, set) {
-    const v = verdicts[verdict], limit = verdict === kWrongRadius ? ` (sizes ${state.sizes.map(d => d.toFixed(2)).join(', ')} px ± ${100 * set.judge.radius_tolerance} %)`
+    const v = verdicts[verdict], limit = verdict === kWrongRadius ? ` (sizes ${state.sizes.map(d => d.toFixed(2)).join(', ')} px ± ${(100 * set.judge.radius_tolerance).toFixed(0)} %)`
       : verdict === kUnexplained && c[SCORE] < state.score ? ` (score below ${state.score})` : '';
     return `${v.word}: ${v.meaning}${limit}${c[FLAG] ? ', ' + c[FLAG] : ''}; x ${c[X]}, y ${c[Y]} px, diameter ${(2 * c[R]).toFixed(2)} px, ` +
       `score ${c[SCORE]}, darkness ${c[DARKNESS]}, interior ${c[INTERIOR]}, ring share ${c[SHARE]}`;

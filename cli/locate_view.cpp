@@ -76,7 +76,7 @@ imaging::FoundSettings settings_of(const imaging::LocatorOptions& options) {
 /// The limits of the judge, as locate_stages applies them.
 json judge_json(const imaging::LocatorOptions& o) {
   const bool profile = imaging::model_of(o.refine) == imaging::DiscModel::shared_profile;
-  return {{"radius_tolerance", imaging::kRadiusTolerance},
+  return {{"radius_tolerance", o.judge.radius_tolerance},
           {"min_interior", profile ? json(nullptr) : json(o.judge.min_interior)},
           {"min_score", o.judge.min_score},
           {"max_overlap", o.judge.max_overlap},
@@ -125,7 +125,8 @@ constexpr std::string_view kNotes = R"(
 <details class="section" id="notes"><summary><h2>Reading this page</h2></summary>
 <p>Each circle has its numbers and its verdict in a tooltip. With the settings of the run, the page shows the beads and
 the dropped candidates of the run. If diameter or score change, the stored candidates are judged again by the rules of the
-program: diameter within 20 %, score, overlap. The polarity and other tried settings have stored candidates of their own.
+program: diameter within 20 % (more if the sizes are spread), score, overlap. The polarity and other tried settings
+have stored candidates of their own.
 Candidates that were never proposed, or that were dropped before they were fitted, do not return; the command finds them.</p>
 </details>
 )";

@@ -15,7 +15,7 @@ namespace {
 
 Verdict verdict_on(const Detection& b, double radius_px, int width, int height, const JudgeOptions& o) {
   if (!std::isfinite(b.x) || !std::isfinite(b.y)) return Verdict::unexplained;
-  const auto near = [&](double radius) { return std::abs(b.radius - radius) <= kRadiusTolerance * radius; };
+  const auto near = [&](double radius) { return std::abs(b.radius - radius) <= o.radius_tolerance * radius; };
   if (!near(radius_px) && std::none_of(o.other_radii_px.begin(), o.other_radii_px.end(), near))
     return Verdict::wrong_radius;
   // The inside of a pale disc is as pale as its rim; that of a void is brighter.

@@ -13,10 +13,11 @@ inline constexpr double kRadiusTolerance = 0.2;
 
 /// Acceptance criteria for a bead.
 struct JudgeOptions {
-  std::vector<double> other_radii_px;  ///< further sizes of beads
-  double min_interior = 0.35;          ///< median darkness inside R/2
-  double min_score = 0.5;              ///< smallest Detection::score, 0 .. 1
-  bool pale = false;                   ///< a pale disc (RefineOptions) is as pale inside as at its rim
+  std::vector<double> other_radii_px;          ///< further sizes of beads
+  double radius_tolerance = kRadiusTolerance;  ///< larger if the beads have a broad distribution of sizes
+  double min_interior = 0.35;                  ///< median darkness inside R/2
+  double min_score = 0.5;                      ///< smallest Detection::score, 0 .. 1
+  bool pale = false;          ///< a pale disc (RefineOptions) is as pale inside as at its rim
   double max_overlap = 0.25;  ///< largest overlap of two discs, in radii; beyond it the worse is dropped
   double tracer_below = 0.8;  ///< a tracer's interior is below this fraction of the median; 0: no tracers
   /// The same if five tracers or more, which are alike, are scattered among three times as many other beads.

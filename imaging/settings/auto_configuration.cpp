@@ -18,6 +18,7 @@
 #include "imaging/refine/profile_fit.hpp"
 #include "imaging/settings/find_contrast.hpp"
 #include "imaging/settings/hypothesis_test.hpp"
+#include "imaging/settings/larger_discs.hpp"
 #include "imaging/settings/polydisperse_settings.hpp"
 #include "imaging/settings/profile_model_selection.hpp"
 #include "imaging/settings/settings_choice.hpp"
@@ -292,6 +293,35 @@ std::optional<FoundSettings> best_not_round(const SettingsChoice& choice) {
   return best->settings;
 }
 
+/// Distance of each disc from the nearest other one, px, ascending; of some, if there are many.
+std::vector<double> nearest_distances(const std::vector<Detection>& beads) {
+  constexpr std::size_t kMost = 500;
+  const std::size_t stride = 1 + beads.size() / kMost;
+  std::vector<double> nearest;
+  for (std::size_t k = 0; k < beads.size() && beads.size() > 1; k += stride) {
+    double least = HUGE_VAL;
+    for (const Detection& o : beads)
+      if (&o != &beads[k]) least = std::min(least, std::hypot(o.x - beads[k].x, o.y - beads[k].y));
+    nearest.push_back(least);
+  }
+  std::sort(nearest.begin(), nearest.end());
+  return nearest;
+}
+
+/// The part of a frame around a disc, in which there are other discs too.
+cv::Mat region_around(const cv::Mat& frame, const LargerDisc& disc) {
+  constexpr double kWider = 2;  // than the disc
+  const int side = std::max(kExaminedSide, static_cast<int>(kWider * disc.diameter_px));
+  const cv::Rect around(cvRound(disc.x) - side / 2, cvRound(disc.y) - side / 2, side, side);
+  return frame(around & cv::Rect({}, frame.size()));
+}
+
+double largest_diameter(const FoundSettings& settings) {
+  double largest = settings.diameter_px;
+  for (const double other : settings.other_diameters_px) largest = std::max(largest, other);
+  return largest;
+}
+
 /// The part of a frame with most structure, some discs wide even if these are large.
 cv::Mat region_for_large(const cv::Mat& frame, double diameter_px) {
   constexpr double kDiscsAcross = 6;
@@ -359,6 +389,25 @@ class SettingsSearch {
     return mixed ? with(choice, {*mixed}) : choice;
   }
 
+  /// The choice, or that of discs that overlap in projection if it is empty: if discs of one layer are fitted
+  /// to two, they explain most but do not seem round, and are up to a tenth too large. Only dark ones, for
+  /// those in front block the light of those behind. The fit takes long, so that one size is tried.
+  [[nodiscard]] SettingsChoice or_overlapping_discs(SettingsChoice choice) const {
+    const TriedSettings* one_layer = not_round(choice);
+    if (one_layer == nullptr || !is_open() || one_layer->settings.bright ||
+        !one_layer->settings.method.empty() || one_layer->settings.contrast != 1)
+      return choice;
+    FoundSettings layers{
+        largest_diameter(one_layer->settings), false, 0, {}, std::string(kOverlappingRefiner.word)};
+    std::vector<double> diameters;
+    for (const Detection& b : locate(grey_, completed(layers, given_)).beads)
+      diameters.push_back(2 * b.radius);
+    if (diameters.empty()) return choice;
+    layers.diameter_px = upper_median(std::move(diameters));
+    SettingsChoice found = with(choice, {layers});
+    return found.tried.empty() || found.tried.front().evidence < one_layer->evidence ? choice : found;
+  }
+
   /// The choice, or that of common profiles of small discs if it is empty.
   SettingsChoice or_small_discs(SettingsChoice choice) {
     if (!choice.tried.empty() || !is_open()) return choice;
@@ -386,6 +435,47 @@ class SettingsSearch {
     return with(choice, more);
   }
 
+  /// The choice with wider discs with a common profile, up to the usual distance of neighbours, if the chosen
+  /// ones may be the highlights of larger beads: they are bright, and apart from each other or small. Next to
+  /// small ones, spots between the beads may have been found too, which are nearer.
+  [[nodiscard]] SettingsChoice with_wider_profiles(const SettingsChoice& choice) const {
+    constexpr double kRatio = 1.25, kSmall_px = 6, kOfSmall_px = 12, kTouching = 1.1;
+    constexpr std::size_t kMost = 5;
+    if (choice.tried.empty()) return choice;
+    const TriedSettings& chosen = choice.tried.front();
+    const FoundSettings& of = chosen.settings;
+    if (!of.bright || !of.other_diameters_px.empty() || of.method == kEdgeRefiner.word ||
+        of.method == kOverlappingRefiner.word)
+      return choice;
+    const std::vector<double> nearest = nearest_distances(locate(grey_, completed(of, given_)).beads);
+    if (nearest.empty()) return choice;
+    const double widest =
+        std::max(kTouching * nearest[nearest.size() / 2], chosen.rim_px < kSmall_px ? kOfSmall_px : 0);
+    std::vector<FoundSettings> wider;
+    for (double d = kRatio * of.diameter_px; d <= widest && wider.size() < kMost; d *= kRatio)
+      wider.push_back({d, true, 0, {}, std::string(kProfileRefiner.word)});
+    return wider.empty() ? choice : with(choice, wider);
+  }
+
+  /// The choice with the sizes of large discs that are too few for the search, such as a single intruder, if
+  /// the picture around them confirms them. Those that it does not confirm are noted.
+  [[nodiscard]] SettingsChoice with_larger_discs(SettingsChoice choice) const {
+    constexpr std::size_t kMaxSizes = 3;
+    if (choice.tried.empty()) return choice;
+    std::vector<Detection> beads = locate(frame_, completed(choice.tried.front().settings, given_)).beads;
+    for (;;) {
+      const TriedSettings& chosen = choice.tried.front();
+      choice.larger = larger_discs(frame_, beads, largest_diameter(chosen.settings));
+      if (choice.larger.empty() || chosen.settings.other_diameters_px.size() + 1 >= kMaxSizes) return choice;
+      std::optional<TriedSettings> more = with_size_of(choice.larger.front(), chosen);
+      if (!more) return choice;
+      std::vector<Detection> with = locate(frame_, completed(more->settings, given_)).beads;
+      if (with.size() <= beads.size()) return choice;
+      beads = std::move(with);
+      choice.tried.insert(choice.tried.begin(), std::move(*more));
+    }
+  }
+
   /// The lattice constant of a crystal that fills the frame, if the chosen discs cover less than 0.3 of it.
   [[nodiscard]] double uncovered_lattice_px(const SettingsChoice& choice) const {
     constexpr double kCovered = 0.3;
@@ -397,6 +487,25 @@ class SettingsSearch {
   }
 
  private:
+  /// Settings with the size of a larger disc in addition; nothing if the picture around it does not gain what
+  /// a bead does, or if discs of one size alone can be fitted.
+  [[nodiscard]] std::optional<TriedSettings> with_size_of(const LargerDisc& disc,
+                                                          const TriedSettings& chosen) const {
+    FoundSettings more = chosen.settings;
+    if (model_of(completed(more, given_).refine) == DiscModel::shared_profile || disc.bright != more.bright)
+      return std::nullopt;
+    more.other_diameters_px.push_back(disc.diameter_px);
+    const ExaminedRegion region{region_around(frame_, disc), region_.neighbour_radius_px};
+    const std::vector<TriedSettings> tried = try_settings(region, given_, {chosen.settings, more}, threads_);
+    const double gain = tried[1].evidence - tried[0].evidence,
+                 share = tried[0].evidence / static_cast<double>(std::max<std::size_t>(1, tried[0].beads));
+    if (gain < share || !is_round(tried[1])) return std::nullopt;
+    TriedSettings with = tried[1];
+    with.evidence = chosen.evidence + gain;
+    with.beads = chosen.beads + tried[1].beads - std::min(tried[0].beads, tried[1].beads);
+    return with;
+  }
+
   /// Whether round discs that were refused for their little evidence a disc have more of it in all: a few
   /// gaps of a crystal are not the beads.
   [[nodiscard]] static bool explains_more(const std::vector<TriedSettings>& refused,
@@ -462,7 +571,8 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   // A frame too small for a disc of the smallest radius contains no information on the size.
   if (given.diameter_px <= 0 && std::min(picture.cols, picture.rows) < 2 * kSmallestRadius) return {};
   // Orientation: canonical, as in `locate`, so that a rotated picture has the same settings.
-  const cv::Mat frame = canonical_picture_orientation(picture).turned(picture);
+  const PictureOrientation orientation = canonical_picture_orientation(picture);
+  const cv::Mat frame = orientation.turned(picture);
   SettingsSearch search(frame, given, threads);
   search.propose_plain_discs();
   search.propose_other_models();
@@ -474,9 +584,17 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   };
   if (given.diameter_px > 0 || model_of(given.refine) != DiscModel::plain)
     return with_saturation(std::move(choice));
-  choice = search.or_small_discs(search.with_further_sizes(std::move(choice)));
+  choice = search.or_overlapping_discs(search.with_further_sizes(std::move(choice)));
+  choice = search.or_small_discs(std::move(choice));
   if (choice.tried.empty()) return choice;
-  choice = search.with_variants_of_winner(choice);
+  choice = search.with_wider_profiles(search.with_variants_of_winner(choice));
+  choice = search.with_larger_discs(std::move(choice));
+  for (LargerDisc& d : choice.larger) {
+    Detection place;
+    place.x = d.x, place.y = d.y;
+    place = orientation.back(place, picture.size());
+    d.x = place.x, d.y = place.y;
+  }
   choice.uncovered_lattice_px = search.uncovered_lattice_px(choice);
   return with_saturation(std::move(choice));
 }

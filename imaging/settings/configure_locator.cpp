@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "core/median.hpp"
+#include "imaging/refine/picture_evidence.hpp"
 #include "imaging/settings/auto_configuration.hpp"
 #include "imaging/settings/find_contrast.hpp"
 #include "imaging/settings/settings_choice.hpp"
@@ -36,6 +37,13 @@ std::vector<double> radii_of(const std::vector<Detection>& beads) {
 /// The settings with the diameter of the rims, unless they then locate fewer discs. A profile describes discs
 /// of another diameter as well, so that the evidence hardly determines it.
 LocatorOptions at_rim(const cv::Mat& frame, LocatorOptions settled, const std::vector<Detection>& beads) {
+  // The rim may be that of a highlight, far inside of discs that fade outwards.
+  constexpr double kFarInside = 0.6;
+  if (2 * upper_median(radii_of(beads)) < kFarInside * settled.diameter_px) {
+    LocatorOptions known = settled;
+    known.size_known = true;
+    if (locate(frame, known).beads.size() >= beads.size()) return known;
+  }
   LocatorOptions rim = settled;
   rim.diameter_px = std::clamp(2 * upper_median(radii_of(beads)), 3.0, 400.0);
   rim.size_known = true;
@@ -64,6 +72,24 @@ LocatorOptions with_pale_discs(const cv::Mat& frame, const LocatorOptions& settl
   if (with.size() < without + std::max<std::size_t>(below, 1)) return settled;
   const double typical = upper_median(pale);
   return robust_spread(std::move(pale), typical) < kAlike * typical ? options : settled;
+}
+
+/// The settings, with a tolerance of the radii for beads of a broad distribution of sizes: four times its
+/// standard deviation about the nearest of the sizes, if this locates more.
+LocatorOptions with_spread_of_sizes(const cv::Mat& frame, const LocatorOptions& settled) {
+  constexpr double kDeviations = 4, kMost = 0.4;
+  constexpr std::size_t kMinBeads = 20;
+  if (model_of(settled.refine) != DiscModel::plain) return settled;
+  const std::vector<Detection> beads = locate(frame, settled).beads;
+  if (beads.size() < kMinBeads) return settled;
+  std::vector<double> sizes = {0.5 * settled.diameter_px}, relative;
+  for (const double other : settled.other_diameters_px) sizes.push_back(0.5 * other);
+  for (const Detection& b : beads) relative.push_back(b.radius / sizes[nearest_size(b.radius, sizes)]);
+  const double middle = upper_median(relative);
+  LocatorOptions wide = settled;
+  wide.judge.radius_tolerance = std::min(kMost, kDeviations * robust_spread(std::move(relative), middle));
+  if (wide.judge.radius_tolerance <= kRadiusTolerance) return settled;
+  return locate(frame, wide).beads.size() > beads.size() ? wide : settled;
 }
 
 /// The smallest distance of two discs, px, if they may be the highlights of larger beads: that of a tenth of
@@ -154,7 +180,7 @@ LocatorConfiguration adapted(const cv::Mat& frame, ChoiceOnFrame chosen, const L
     const std::vector<Detection> beads = locate(frame, settled).beads;
     settled = at_rim(frame, std::move(settled), beads);
   }
-  settled = with_pale_discs(frame, settled);
+  settled = with_spread_of_sizes(frame, with_pale_discs(frame, settled));
   const std::vector<Detection> beads = locate(frame, settled).beads;
   chosen.choice.apart_px = distance_of_parts(beads, settled);
   if (given.diameter_px <= 0) chosen.choice.spots_px = width_of_spots(beads, settled);
@@ -210,7 +236,7 @@ LocatorConfiguration configure_locator(FramesAhead& frames, const LocatorOptions
   if (given.diameter_px <= 0 || !given.polarity_known) return search(frames, given, threads);
   LocatorOptions found = given;
   found.preprocess.contrast = find_contrast(*first, given);
-  return {with_pale_discs(*first, found), 0, {}};
+  return {with_spread_of_sizes(*first, with_pale_discs(*first, found)), 0, {}};
 }
 
 }  // namespace twincell::imaging

@@ -31,6 +31,13 @@ struct TriedSettings {
   bool preferred = false;  ///< the chosen ones needed clearly more evidence than these, and had it
 };
 
+/// A round region of a picture that is larger than the beads.
+struct LargerDisc {
+  double x = 0, y = 0;     ///< px
+  double diameter_px = 0;  ///< of its rim
+  bool bright = false;     ///< brighter than its surroundings
+};
+
 /// All settings that were tried, and the best of them.
 struct SettingsChoice {
   std::vector<TriedSettings> tried;  ///< the chosen ones first, the others by evidence; empty: none explains
@@ -45,6 +52,8 @@ struct SettingsChoice {
   double apart_px = 0;
   /// Width of the chosen discs, px, if it is that of the highlights of larger beads or of gaps. 0: it is not.
   double spots_px = 0;
+  /// Round regions that are larger than the beads and that no bead explains (larger_discs.hpp).
+  std::vector<LargerDisc> larger;
   /// Share of the pixels that have the brightest grey level of the picture, if the beads are dark. A camera
   /// that its light does not saturate has few of them.
   double saturated = 0;

@@ -17,6 +17,8 @@ namespace twincell::imaging {
 
 namespace {
 
+constexpr double kOtherSize = 0.1;  // relative difference of diameters
+
 /// All diameters, ascending.
 std::vector<double> diameters_of(const FoundSettings& s) {
   std::vector<double> all = s.other_diameters_px;
@@ -30,6 +32,15 @@ bool same_sizes(const FoundSettings& a, const FoundSettings& b, double tolerance
   return of_a.size() == of_b.size() &&
          std::equal(of_a.begin(), of_a.end(), of_b.begin(),
                     [&](double x, double y) { return std::abs(x / y - 1) < tolerance; });
+}
+
+/// Whether all sizes of `some`, and others, are sizes of `all`.
+bool has_sizes_of(const FoundSettings& all, const FoundSettings& some) {
+  const std::vector<double> sizes = diameters_of(all), fewer = diameters_of(some);
+  return fewer.size() < sizes.size() && std::all_of(fewer.begin(), fewer.end(), [&](double d) {
+           return std::any_of(sizes.begin(), sizes.end(),
+                              [&](double s) { return std::abs(s / d - 1) < kOtherSize; });
+         });
 }
 
 bool is_profile(const TriedSettings& tried) {
@@ -72,6 +83,17 @@ bool are_parts(const TriedSettings& first, const TriedSettings& other) {
          other.rim_px > kSmaller * first.rim_px;
 }
 
+/// Whether `other` shows more of the discs of `first`: wider ones with a common profile, of the same polarity
+/// and not more of them. Then `first` may be their highlights, with spots between them.
+bool shows_more_of(const TriedSettings& first, const TriedSettings& other) {
+  constexpr double kWider = 1.2, kFewest = 0.5, kMost = 1.05;  // of the number of discs
+  const double share =
+      static_cast<double>(other.beads) / static_cast<double>(std::max<std::size_t>(1, first.beads));
+  return is_profile(other) && other.settings.bright && first.settings.bright &&
+         first.settings.other_diameters_px.empty() && share > kFewest && share < kMost &&
+         other.settings.diameter_px > kWider * first.settings.diameter_px;
+}
+
 /// The rejected candidates that are discs, of another size or outside the frame.
 std::vector<Detection> other_discs(const std::vector<Detection>& dropped) {
   constexpr double kGood = 0.8;  // least score
@@ -106,9 +128,8 @@ TriedSettings try_one(const ExaminedRegion& region, const LocatorOptions& given,
   return tried;
 }
 
-constexpr double kMinShare = 5;     // nats a disc: odds of 150 that it is one
-constexpr double kPart = 0.5;       // least evidence, in that of what is not round
-constexpr double kOtherSize = 0.1;  // relative difference of diameters
+constexpr double kMinShare = 5;  // nats a disc: odds of 150 that it is one
+constexpr double kPart = 0.5;    // least evidence, in that of what is not round
 
 bool explains(const TriedSettings& tried) {
   return tried.evidence > 0 && tried.evidence >= kMinShare * static_cast<double>(tried.beads);
@@ -179,7 +200,7 @@ std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const Loca
 }
 
 SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
-  constexpr double kDiscs = 3, kTimesArea = 2;
+  constexpr double kDiscs = 3, kTimesArea = 2, kMore = 1.05;
   // Discs that may overlap can explain more, like discs of further sizes.
   const auto sizes = [](const TriedSettings& t) {
     return t.settings.other_diameters_px.size() + (is_overlapping(t) ? 1 : 0);
@@ -203,7 +224,11 @@ SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
       if (first->evidence > best->evidence - kDiscs * share)
         reason = is_overlapping(*best) ? "a further layer gains less than three discs"
                                        : "a further size gains less than three discs";
-    } else if ((are_parts(*first, *best) ? kMinAdvantage : clearly) * first->evidence > best->evidence &&
+    } else if ((shows_more_of(*first, *best) ? kMore
+                : are_parts(*first, *best)   ? kMinAdvantage
+                                             : clearly) *
+                       first->evidence >
+                   best->evidence &&
                !finds_more_of_the_same(*best, *first)) {
       reason =
           fmt::format("less than {:g} times the evidence of the preferred ones{}", clearly,
@@ -247,7 +272,7 @@ bool same_discs(const TriedSettings& a, const TriedSettings& b) {
 }
 
 std::size_t runner_up(const SettingsChoice& choice) {
-  constexpr double kOtherNumber = 0.05;
+  constexpr double kOtherNumber = 0.05, kFew = 0.02;
   for (std::size_t k = 1; k < choice.tried.size(); ++k) {
     const TriedSettings &first = choice.tried.front(), &other = choice.tried[k];
     if (!is_round(other)) continue;
@@ -255,6 +280,11 @@ std::size_t runner_up(const SettingsChoice& choice) {
     if (other.beads < first.beads && other.evidence < first.evidence &&
         other.settings.bright == first.settings.bright &&
         same_sizes(first.settings, other.settings, kOtherSize))
+      continue;
+    // Without the size of a few large discs, the others are the same.
+    if (other.beads <= first.beads && other.evidence < first.evidence &&
+        other.settings.bright == first.settings.bright && has_sizes_of(first.settings, other.settings) &&
+        static_cast<double>(first.beads - other.beads) < kFew * static_cast<double>(first.beads))
       continue;
     const double difference = std::abs(static_cast<double>(other.beads) - static_cast<double>(first.beads));
     if (difference > kOtherNumber * static_cast<double>(first.beads)) return k;

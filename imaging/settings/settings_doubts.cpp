@@ -8,6 +8,20 @@
 
 namespace twincell::imaging {
 
+namespace {
+
+/// "round regions: 64 px wide at (150, 190), ...", the largest first.
+std::string regions_text(const std::vector<LargerDisc>& discs) {
+  constexpr std::size_t kMost = 5;
+  std::string text = "round regions larger than the beads:";
+  for (std::size_t k = 0; k < std::min(kMost, discs.size()); ++k)
+    text += fmt::format("{} {:.0f} px wide at ({:.0f}, {:.0f})", k > 0 ? "," : "", discs[k].diameter_px,
+                        discs[k].x, discs[k].y);
+  return discs.size() > kMost ? text + fmt::format(" and {} more", discs.size() - kMost) : text;
+}
+
+}  // namespace
+
 std::string options_text(const FoundSettings& settings, const std::string& refine) {
   std::string text = fmt::format("--diameter {:.2f}", settings.diameter_px);
   for (const double other : settings.other_diameters_px) text += fmt::format(" {:.2f}", other);
@@ -41,6 +55,13 @@ std::vector<std::string> settings_doubts(const SettingsChoice& choice, const std
         "between them; check the overlay of twincell locate --overlay, and give the diameter of "
         "larger beads with --diameter",
         choice.spots_px));
+  if (!choice.larger.empty()) {
+    const LargerDisc& largest = choice.larger.front();
+    doubts.push_back(fmt::format(
+        "no bead explains {}: if they are beads, locate each size with a table of its own, the "
+        "largest with --diameter {:.0f} {} --refine edges",
+        regions_text(choice.larger), largest.diameter_px, largest.bright ? "--bright" : "--dark"));
+  }
   constexpr double kSaturated = 0.1;
   if (choice.saturated > kSaturated)
     doubts.push_back(

@@ -131,4 +131,14 @@ Located in_whole_picture(Located located, const Region& region) {
   return located;
 }
 
+SettingsChoice in_whole_picture(SettingsChoice choice, const Region& region) {
+  for (LargerDisc& d : choice.larger) {
+    d.x += region.corner().x;
+    d.y += region.corner().y;
+  }
+  std::erase_if(choice.larger,
+                [&](const LargerDisc& d) { return region.cuts(d.x, d.y, 0.5 * d.diameter_px); });
+  return choice;
+}
+
 }  // namespace twincell::imaging

@@ -11,6 +11,7 @@
 
 #include "imaging/locate/locator.hpp"
 #include "imaging/preprocess/region.hpp"
+#include "imaging/settings/found_settings.hpp"
 #include "imaging/stack/chosen_frames.hpp"
 
 namespace twincell::imaging {
@@ -60,6 +61,8 @@ std::string option_for_frames(const LocatingRequest& request);
 /// A frame that was located in a region, with positions in the whole picture and without discs that the mask
 /// cuts.
 Located in_whole_picture(Located located, const Region& region);
+/// The same for the larger discs of a choice.
+SettingsChoice in_whole_picture(SettingsChoice choice, const Region& region);
 /// The options that restrict or change what is read, for the record of the result; null if there are none.
 nlohmann::json restrictions(const LocatingRequest& request);
 

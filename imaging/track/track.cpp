@@ -19,6 +19,7 @@
 #include "imaging/stack/repeated_frames.hpp"
 #include "imaging/track/inside_cell.hpp"
 #include "imaging/track/locate_stack.hpp"
+#include "imaging/track/locating_request.hpp"
 
 namespace twincell::imaging {
 
@@ -210,7 +211,7 @@ TrackedStack track_stack(FrameSource& stack, const CellDescription& cell, const 
     const Stage configuring(times, "settings");
     const LocatorConfiguration found = configure_locator(frames, given.locator, given.threads);
     options.locator = found.locator;
-    doubts = settings_doubts(found.choice, given.locator.refine.method);
+    doubts = settings_doubts(in_whole_picture(found.choice, given.region), given.locator.refine.method);
   }
   const Detections detected = detect(frames, cell, options, watched.size(), progress, times);
   // If the frame cuts beads, others enter and leave.

@@ -32,6 +32,16 @@ Verdict judged(const Detection& b) {
   return (j.beads.empty() ? j.dropped : j.beads).at(0).verdict;
 }
 
+// Beads of a broad distribution of sizes have a larger tolerance.
+TEST(Judge, TheToleranceOfTheRadiusDecides) {
+  Detection small = good(50, 50);
+  small.radius = 0.75 * 7.5;
+  EXPECT_EQ(judged(small), Verdict::wrong_radius);
+  JudgeOptions wide;
+  wide.radius_tolerance = 0.3;
+  EXPECT_EQ(judge({small}, 7.5, 200, 100, wide).beads.size(), 1U);
+}
+
 /// Number of tracers among beads with these interiors.
 std::size_t tracers(const std::vector<double>& interiors) {
   std::vector<Detection> beads;

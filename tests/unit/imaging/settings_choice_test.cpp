@@ -31,6 +31,22 @@ TEST(SettingsChoice, LargestEvidenceWinsUnlessThePreferredSuffice) {
   EXPECT_EQ(chosen({}), 0);
 }
 
+// Bright discs may be highlights: wider ones with a common profile that explain a little more are the beads.
+TEST(SettingsChoice, WiderDiscsReplaceTheirHighlights) {
+  const auto bright = [](double diameter, double evidence, std::size_t beads) {
+    TriedSettings t = tried(diameter, evidence, beads);
+    t.settings.bright = true;
+    t.settings.method = "profile";
+    return t;
+  };
+  EXPECT_EQ(chosen({bright(10, 1000, 100), bright(20, 1060, 100)}), 20);
+  EXPECT_EQ(chosen({bright(10, 1000, 100), bright(20, 1060, 70)}), 20) << "spots between the beads";
+  EXPECT_EQ(chosen({bright(10, 1000, 100), bright(20, 1040, 100)}), 10);
+  EXPECT_EQ(chosen({bright(10, 1000, 100), bright(20, 1060, 30)}), 10) << "other discs";
+  EXPECT_EQ(chosen({bright(10, 1000, 100), bright(11, 1060, 100)}), 10) << "the same discs";
+  EXPECT_EQ(chosen({bright(10, 1000, 100), tried(20, 1060, 100)}), 10);
+}
+
 // A further size must gain the share of three discs.
 TEST(SettingsChoice, AFurtherSizeMustGain) {
   EXPECT_EQ(choose({tried(10, 10000, 100), tried(10, 10290, 105, {14})})
@@ -117,6 +133,8 @@ TEST(SettingsChoice, RunnerUpHasOtherDiscs) {
   EXPECT_EQ(runner_up(choose({tried(10, 1000, 100), tried(10.5, 990, 90)})), 0U) << "some of the same discs";
   EXPECT_EQ(runner_up(choose({tried(10, 1000, 100), tried(10.5, 990, 110)})), 1U) << "more discs";
   EXPECT_EQ(runner_up(choose({tried(10, 1000, 100), tried(10.5, 1010, 90)})), 1U) << "more evidence";
+  EXPECT_EQ(runner_up(choose({tried(10, 1040, 101, {60}), tried(10, 1000, 100)})), 0U) << "without one disc";
+  EXPECT_EQ(runner_up(choose({tried(10, 1400, 110, {14}), tried(10, 1000, 100)})), 1U);
 }
 
 }  // namespace
