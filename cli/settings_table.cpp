@@ -87,6 +87,8 @@ std::string settings_table(const imaging::SettingsChoice& choice, const std::str
 
 std::string settings_lead(const imaging::SettingsChoice& choice, const std::string& refine) {
   const std::size_t k = imaging::runner_up(choice);
+  if (k == 0 && choice.suffices)
+    return "they explain nearly all of the picture: no others can explain clearly more\n";
   if (k == 0)
     return choice.tried.size() > 1 ? "the other settings describe the same discs, or some of them\n"
                                    : "no other settings explain a part of the picture\n";

@@ -44,6 +44,39 @@ struct Term {
   std::size_t disc;
 };
 
+/// The steps to the neighbours of a pixel, for discs of a radius.
+std::vector<cv::Point> steps_of(double radius) {
+  std::vector<cv::Point> steps;
+  const double far = std::max(kMinStep, kStep * radius);
+  for (int k = 0; k < kDirections; ++k) {
+    const double turn = std::numbers::pi * k / kDirections;
+    steps.emplace_back(cvRound(far * std::cos(turn)), cvRound(far * std::sin(turn)));
+  }
+  return steps;
+}
+
+/// e_0 of a pixel: the smallest rms difference, over sqrt 2, to the two pixels at a distance on a straight
+/// line through it. In uniform areas the smallest of several would be below the noise.
+double without_discs(const cv::Mat1f& grey, double noise, int x, int y, const std::vector<cv::Point>& steps) {
+  constexpr double kTypical = 0.45;  // median of the square of a standard normal variable
+  const float here = grey(y, x);
+  float least = HUGE_VALF;
+  for (const cv::Point& step : steps) {
+    float squares = 0;
+    int seen = 0;
+    for (const int times : {-2, -1, 1, 2}) {
+      const int i = x + times * step.x, j = y + times * step.y;
+      if (i < 0 || j < 0 || i >= grey.cols || j >= grey.rows) continue;
+      const float e = grey(j, i) - here;
+      squares += e * e;
+      ++seen;
+    }
+    if (seen > 0) least = std::min(least, squares / static_cast<float>(2 * seen));
+  }
+  const double floor = kTypical * noise * noise;
+  return std::sqrt(std::isfinite(least) ? std::max(floor, static_cast<double>(least)) : floor);
+}
+
 class Explanation {
  public:
   Explanation(const cv::Mat1f& grey, const std::vector<Detection>& discs, const std::vector<double>& radii,
@@ -58,11 +91,7 @@ class Explanation {
       s.level.assign(s.count, 0);
       s.scale.assign(s.count, noise_);
       s.used.assign(s.count, true);
-      const double far = std::max(kMinStep, kStep * (neighbour_radius > 0 ? neighbour_radius : r));
-      for (int k = 0; k < kDirections; ++k) {
-        const double turn = std::numbers::pi * k / kDirections;
-        s.steps.emplace_back(cvRound(far * std::cos(turn)), cvRound(far * std::sin(turn)));
-      }
+      s.steps = steps_of(neighbour_radius > 0 ? neighbour_radius : r);
       sizes_.push_back(std::move(s));
     }
     for (const Detection& d : discs) size_of_.push_back(nearest_size(d.radius, radii));
@@ -248,28 +277,6 @@ class Explanation {
     const auto b = static_cast<std::size_t>(owner_(y, x));
     return static_cast<double>(grey_(y, x)) - offset_[b] - static_cast<double>(model_(y, x));
   }
-  /// e_0 of a pixel: the smallest rms difference, over sqrt 2, to the two pixels at a distance on a straight
-  /// line through it. In uniform areas the smallest of several would be below the noise.
-  [[nodiscard]] double without(int x, int y, const std::vector<cv::Point>& steps) const {
-    constexpr double kTypical = 0.45;  // median of the square of a standard normal variable
-    const float here = grey_(y, x);
-    float least = HUGE_VALF;
-    for (const cv::Point& step : steps) {
-      float squares = 0;
-      int seen = 0;
-      for (const int times : {-2, -1, 1, 2}) {
-        const int i = x + times * step.x, j = y + times * step.y;
-        if (i < 0 || j < 0 || i >= grey_.cols || j >= grey_.rows) continue;
-        const float e = grey_(j, i) - here;
-        squares += e * e;
-        ++seen;
-      }
-      if (seen > 0) least = std::min(least, squares / static_cast<float>(2 * seen));
-    }
-    const double floor = kTypical * noise_ * noise_;
-    return std::sqrt(std::isfinite(least) ? std::max(floor, static_cast<double>(least)) : floor);
-  }
-
   template <class Use>
   void over_owned(Use&& use) const {
     for (int y = 0; y < grey_.rows; ++y)
@@ -282,7 +289,7 @@ class Explanation {
 
   /// Measures the scale of the residuals by r - R, and decides where the profile is used.
   void measure() {
-    std::vector<std::vector<double>> residuals(levels_), gain(levels_);
+    std::vector<std::vector<double>> residuals(levels_);
     over_owned([&](int x, int y, std::size_t b, std::size_t k) {
       residuals[sizes_[size_of_[b]].first + k].push_back(std::abs(residual(x, y)));
     });
@@ -291,9 +298,13 @@ class Explanation {
         if (auto& of = residuals[s.first + k]; !of.empty())
           s.scale[k] = std::max(noise_, robust_spread(std::move(of)));
     std::vector<double> sums(levels_);
+    gain_.create(grey_.size());
     over_owned([&](int x, int y, std::size_t b, std::size_t k) {
       const Size& s = sizes_[size_of_[b]];
-      sums[s.first + k] += pixel_gain(residual(x, y), s.scale[k], without(x, y, s.steps), noise_);
+      const double gain =
+          pixel_gain(residual(x, y), s.scale[k], without_discs(grey_, noise_, x, y, s.steps), noise_);
+      gain_(y, x) = gain;
+      sums[s.first + k] += gain;
     });
     for (Size& s : sizes_)
       for (std::size_t k = 0; k < s.count; ++k) s.used[k] = sums[s.first + k] > 0;
@@ -315,7 +326,7 @@ class Explanation {
       ++owned[b];
       if (!s.used[k]) return;
       const double e1 = residual(x, y);
-      result.of_disc[b] += pixel_gain(e1, s.scale[k], without(x, y, s.steps), noise_);
+      result.of_disc[b] += gain_(y, x);
       if (out_(y, x) < -kRim) return;
       result.misfit[b] += std::log(1 + e1 * e1 / (s.scale[k] * s.scale[k]));
       ++pixels[b];
@@ -404,6 +415,7 @@ class Explanation {
   cv::Mat1i owner_;  // the disc that a pixel belongs to; -1: none
   cv::Mat1f out_;    // r - R of that disc
   cv::Mat1f model_;  // sum of the profiles, each times its amplitude
+  cv::Mat1d gain_;   // of each pixel of a disc
   cv::Mat1f own_;    // the profile of the owner, without its amplitude
 };
 
@@ -439,6 +451,22 @@ double noise_level(const cv::Mat1f& grey) {
       seen.begin() + static_cast<std::ptrdiff_t>(kFlattestShare * static_cast<double>(seen.size()));
   std::nth_element(seen.begin(), at, seen.end());
   return std::max(least, static_cast<double>(*at) / (kQuantile * std::sqrt(6.0)));
+}
+
+double possible_evidence(const cv::Mat& grey, double neighbour_radius_px) {
+  constexpr double kTypical =
+      0.84;  // of a normal variable z: 1 + kTypical^2 is the geometric mean of 1 + z^2
+  if (grey.empty()) return 0;
+  cv::Mat1f levels;
+  grey.convertTo(levels, CV_32F);
+  const double noise = noise_level(levels);
+  const std::vector<cv::Point> steps = steps_of(neighbour_radius_px);
+  double sum = 0;
+  for (int y = 0; y < levels.rows; ++y)
+    for (int x = 0; x < levels.cols; ++x)
+      sum += std::max(0.0,
+                      pixel_gain(kTypical * noise, noise, without_discs(levels, noise, x, y, steps), noise));
+  return sum;
 }
 
 PictureEvidence picture_evidence(const cv::Mat& grey, const std::vector<Detection>& discs,

@@ -66,6 +66,12 @@ PictureEvidence picture_evidence(const cv::Mat& grey, const std::vector<Detectio
                                  const std::vector<double>& radii_px, double neighbour_radius_px = 0,
                                  const cv::Mat1b& walls = {});
 
+/// The evidence of settings whose residuals would be the noise everywhere, nats: hardly any settings can have
+/// more. Walls and text count too; they may be discs.
+/// \param neighbour_radius_px R of the distances above. With that of a small disc, the rims of larger ones
+///     seem straight, and the evidence for them too small
+double possible_evidence(const cv::Mat& grey, double neighbour_radius_px);
+
 /// Index of the size, among at least one, to which a radius has the smallest ratio.
 std::size_t nearest_size(double radius, const std::vector<double>& radii);
 

@@ -14,6 +14,7 @@
 #include "imaging/locate/picture_orientation.hpp"
 #include "imaging/refine/edge_fit.hpp"
 #include "imaging/refine/overlapping_fit.hpp"
+#include "imaging/refine/picture_evidence.hpp"
 #include "imaging/refine/picture_fit.hpp"
 #include "imaging/refine/profile_fit.hpp"
 #include "imaging/settings/find_contrast.hpp"
@@ -340,9 +341,42 @@ class SettingsSearch {
         lattice_(lattice_constant(grey_)),
         hypotheses_(hypotheses(grey_, given, lattice_)) {}
 
+  /// The choice of plain discs that explain nearly all of the picture, so that the other models, which take
+  /// most of the time, cannot explain clearly more. Of each polarity, the size with the sharpest votes is
+  /// tried: first on a part of the picture, for most pictures show there that it does not suffice.
+  std::optional<SettingsChoice> plain_discs_that_suffice() {
+    constexpr double kDiscsAcross = 14;
+    constexpr int kMinPart = 160;
+    // Shares of the possible evidence. Discs cut by the sides of a part have less of it. Beyond the share of
+    // the whole, no settings with 1.05 times as many discs of the same size exist, see choose().
+    constexpr double kOfPart = 0.85, kOfWhole = 1 / 1.05;
+    constexpr double kOfLattice = 0.9;  // beads that do not touch, and blurred rims
+    if (!is_open()) return std::nullopt;
+    for (const bool bright : {false, true}) {
+      const auto sharpest = std::find_if(hypotheses_.begin(), hypotheses_.end(),
+                                         [&](const Hypothesis& h) { return h.bright == bright; });
+      if (sharpest != hypotheses_.end()) try_all({sharpest, sharpest + 1});
+    }
+    if (!best_ || best_->explained <= 0) return std::nullopt;
+    // The gaps of a crystal and the middles of its beads are as alike as the beads: see judge().
+    if (best_->diameter_px < kOfLattice * lattice_) return std::nullopt;
+    const int side = std::max(kMinPart, static_cast<int>(kDiscsAcross * best_->diameter_px));
+    const cv::Mat part = busiest(grey_, side);
+    if (!most_of_possible({part, 0.5 * best_->diameter_px}, kOfPart)) return std::nullopt;
+    // Rings cost little evidence, but their fit is more accurate.
+    if (!try_profile(part, given_, {best_->bright, best_->diameter_px}).looks_plain()) return std::nullopt;
+    region_ = {grey_, 0.5 * best_->diameter_px};
+    const std::optional<TriedSettings> tried = most_of_possible(region_, kOfWhole);
+    if (!tried) return std::nullopt;
+    others_excluded_ = true;
+    return SettingsChoice{{*tried}, {}};
+  }
+
   /// Adds plain discs of all hypotheses to the candidates; if there are none, also a few large discs.
   void propose_plain_discs() {
     constexpr double kShrink = 4;
+    candidates_.clear();
+    best_.reset();
     try_all(hypotheses_);
     // The size of small discs that touch does not converge in a few sweeps: blur and radius look alike.
     for (const Hypothesis& h : hypotheses_)
@@ -427,12 +461,12 @@ class SettingsSearch {
       if (given_.refine.method == kExactRefiner.word) {
         const bool plain = completed(winner, given_).refine.method == kExactRefiner.word;
         winner.method = kEdgeRefiner.word;
-        more.push_back(winner);
+        if (!others_excluded_) more.push_back(winner);
         winner.method = kOverlappingRefiner.word;
         if (plain && may_overlap(grey_, given_, choice.tried.front().settings)) more.push_back(winner);
       }
     }
-    return with(choice, more);
+    return more.empty() ? choice : with(choice, more);
   }
 
   /// The choice with wider discs with a common profile, up to the usual distance of neighbours, if the chosen
@@ -441,7 +475,7 @@ class SettingsSearch {
   [[nodiscard]] SettingsChoice with_wider_profiles(const SettingsChoice& choice) const {
     constexpr double kRatio = 1.25, kSmall_px = 6, kOfSmall_px = 12, kTouching = 1.1;
     constexpr std::size_t kMost = 5;
-    if (choice.tried.empty()) return choice;
+    if (choice.tried.empty() || others_excluded_) return choice;
     const TriedSettings& chosen = choice.tried.front();
     const FoundSettings& of = chosen.settings;
     if (!of.bright || !of.other_diameters_px.empty() || of.method == kEdgeRefiner.word ||
@@ -519,6 +553,19 @@ class SettingsSearch {
     return given_.other_diameters_px.empty() && given_.refine.method == kExactRefiner.word;
   }
 
+  /// The best plain discs as tried in a region, if they are round and have a share of its possible evidence.
+  [[nodiscard]] std::optional<TriedSettings> most_of_possible(const ExaminedRegion& region,
+                                                              double share) const {
+    const TriedSettings tried = tried_in_full(region, given_, *best_);
+    // At the distances of small discs, the rims of large ones seem straight. At large distances, smooth light
+    // and the outline of a packing count too.
+    constexpr double kOfWide = 0.75;
+    const double possible = std::max(possible_evidence(region.picture, region.neighbour_radius_px),
+                                     kOfWide * possible_evidence(region.picture, kLargestRadius));
+    if (!is_round(tried) || tried.beads == 0 || tried.evidence < share * possible) return std::nullopt;
+    return tried;
+  }
+
   void try_all(const std::vector<Hypothesis>& some) {
     std::vector<FoundSettings> settled(some.size());
     in_parallel(some.size(), threads_, [&](std::size_t k) {
@@ -548,6 +595,7 @@ class SettingsSearch {
   double lattice_;  ///< lattice constant, px; 0: no crystal
   std::vector<Hypothesis> hypotheses_;
   std::vector<FoundSettings> candidates_;
+  bool others_excluded_ = false;  ///< by plain_discs_that_suffice()
   std::optional<FoundSettings> best_, patterned_;
   ExaminedRegion region_;
 };
@@ -574,9 +622,15 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   const PictureOrientation orientation = canonical_picture_orientation(picture);
   const cv::Mat frame = orientation.turned(picture);
   SettingsSearch search(frame, given, threads);
-  search.propose_plain_discs();
-  search.propose_other_models();
-  SettingsChoice choice = search.judge();
+  std::optional<SettingsChoice> sufficient = search.plain_discs_that_suffice();
+  SettingsChoice choice;
+  if (sufficient) {
+    choice = *sufficient;
+  } else {
+    search.propose_plain_discs();
+    search.propose_other_models();
+    choice = search.judge();
+  }
   const auto with_saturation = [&](SettingsChoice chosen) {
     if (!chosen.tried.empty() && !chosen.tried.front().settings.bright)
       chosen.saturated = brightest_share(picture);
@@ -595,6 +649,7 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
     place = orientation.back(place, picture.size());
     d.x = place.x, d.y = place.y;
   }
+  choice.suffices = sufficient.has_value();
   choice.uncovered_lattice_px = search.uncovered_lattice_px(choice);
   return with_saturation(std::move(choice));
 }

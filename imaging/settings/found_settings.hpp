@@ -44,6 +44,8 @@ struct SettingsChoice {
                                      ///< anything
   std::vector<TriedSettings> refused;  ///< if empty: what was tried, with the reasons; those that explain
                                        ///< something but are not round first, each by evidence
+  /// The chosen ones explain so much of the picture that other sizes and models were not tried.
+  bool suffices = false;
   /// The lattice constant of a crystal that fills the picture, px, if the chosen discs cover little of it:
   /// the beads of the crystal are not among them. 0: none.
   double uncovered_lattice_px = 0;

@@ -199,6 +199,11 @@ std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const Loca
   return tried;
 }
 
+TriedSettings tried_in_full(const ExaminedRegion& region, const LocatorOptions& given,
+                            const FoundSettings& settings) {
+  return try_one(region, given, settings, given.refine.sweeps);
+}
+
 SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
   constexpr double kDiscs = 3, kTimesArea = 2, kMore = 1.05;
   // Discs that may overlap can explain more, like discs of further sizes.
@@ -256,7 +261,7 @@ SettingsChoice confirmed(const ExaminedRegion& region, const LocatorOptions& giv
   for (std::size_t left = choice.tried.size(); left > 0; --left) {
     TriedSettings& first = choice.tried.front();
     const double before = first.evidence;
-    first = try_one(region, given, first.settings, given.refine.sweeps);
+    first = tried_in_full(region, given, first.settings);
     constexpr double kKept = 0.9;
     if (first.evidence >= kKept * before && is_round(first)) break;
     choice = choose(std::move(choice.tried), region.clearly);

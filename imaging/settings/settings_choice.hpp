@@ -44,6 +44,10 @@ LocatorOptions completed(const FoundSettings& settings, LocatorOptions given);
 std::vector<TriedSettings> try_settings(const ExaminedRegion& region, const LocatorOptions& given,
                                         const std::vector<FoundSettings>& candidates, int threads);
 
+/// Tries settings as try_settings() does, with all sweeps of their fit.
+TriedSettings tried_in_full(const ExaminedRegion& region, const LocatorOptions& given,
+                            const FoundSettings& settings);
+
 /// Sorts by evidence and puts the chosen ones first. They are those with the largest evidence, unless the
 /// first in the list, which are preferred, suffice: those with as many sizes must have 1.25 times their
 /// evidence (or more discs of the same size, each explained at least as well) and at least half of the area

@@ -91,6 +91,20 @@ TEST(PictureEvidence, FallsForMissingAndForSurplusDiscs) {
   EXPECT_GT(invented.misfit[4], invented.misfit[0]);
 }
 
+// The true discs have all that is possible but the cost of their parameters, and not all discs do not, nor do
+// small discs in the middle of large ones, at distances at which the rims of the large ones seem straight.
+TEST(PictureEvidence, OfTheTrueDiscsIsNearlyThePossible) {
+  const cv::Mat1f grey = cones(kCentres);
+  const double possible = possible_evidence(grey, kRadius);
+  const double of_all = picture_evidence(grey, discs_at(kCentres, kRadius), {kRadius}, kRadius).total;
+  EXPECT_GT(of_all, 0.9 * possible);
+  EXPECT_LT(of_all, possible);
+  EXPECT_LT(picture_evidence(grey, discs_at({kCentres[0], kCentres[1]}, kRadius), {kRadius}, kRadius).total,
+            0.55 * possible);
+  EXPECT_LT(picture_evidence(grey, discs_at(kCentres, 4), {4}, kRadius).total, 0.5 * possible);
+  EXPECT_EQ(possible_evidence(cv::Mat1f(0, 0), kRadius), 0);
+}
+
 // Discs of another size or place lose.
 TEST(PictureEvidence, IsLargestForTheTrueDiscs) {
   const cv::Mat1f grey = cones(kCentres);
