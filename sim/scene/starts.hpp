@@ -2,30 +2,19 @@
 /// \file
 /// The kinds of start: one table that the scene reader, the plan, `simulate`, `explain` and the help share.
 ///
-/// To add a start: its function in a file of sim/start/ (start_lattice.cpp, start_random.cpp and
-/// start_files.cpp hold the present ones) with a test, and here its enumerator, the declaration of the
-/// function, and one row of the table. `twincell keys scene` prints its line of help.
+/// To add a start: here its enumerator and one row of the table; its function, with a test, in a file of
+/// sim/start/ (start_lattice.cpp, start_random.cpp and start_files.cpp hold the present ones), and its case
+/// in selected_start() of sim/start/start.cpp. `twincell keys scene` prints its line of help.
 
 #include <array>
 #include <string_view>
 
 #include "core/choice.hpp"
-#include "core/progress.hpp"
 
 namespace twincell::sim {
 
-struct Scene;
-struct Start;
-
 /// Initial positions of the beads.
 enum class StartKind { crystal_a, crystal_b, random, trajectory, table };
-
-// The functions of the table; sim/start/start.hpp documents them.
-Start crystal_a(const Scene& scene, Progress& progress);
-Start crystal_b(const Scene& scene, Progress& progress);
-Start random_deposit(const Scene& scene, Progress& progress);
-Start from_trajectory(const Scene& scene, Progress& progress);
-Start from_table(const Scene& scene, Progress& progress);
 
 /// A kind of start and what it needs from the scene.
 struct StartRow {
@@ -38,36 +27,30 @@ struct StartRow {
   /// start.fraction.
   bool draws = false;
   bool sets_radii = false;  ///< the file sets the radii, so that beads.spread cannot
-  Start (*make)(const Scene& scene, Progress& progress);
 };
 
 /// All kinds of start. The first is the default.
 inline constexpr std::array kStarts = {
     StartRow{.value = StartKind::crystal_a,
              .word = "crystal_a",
-             .help = "close-packed rows (3D: layers of the hexagonal stack) parallel to the plate",
-             .make = crystal_a},
+             .help = "close-packed rows (3D: layers of the hexagonal stack) parallel to the plate"},
     StartRow{.value = StartKind::crystal_b,
              .word = "crystal_b",
-             .help = "close-packed rows (3D: layers of the hexagonal stack) parallel to the side walls",
-             .make = crystal_b},
+             .help = "close-packed rows (3D: layers of the hexagonal stack) parallel to the side walls"},
     StartRow{.value = StartKind::random,
              .word = "random",
              .help = "random positions and velocities, from which the beads fall",
-             .draws = true,
-             .make = random_deposit},
+             .draws = true},
     StartRow{.value = StartKind::trajectory,
              .word = "trajectory",
              .help = "a frame of a trajectory file",
              .from_file = true,
-             .has_frames = true,
-             .make = from_trajectory},
+             .has_frames = true},
     StartRow{.value = StartKind::table,
              .word = "table",
              .help = "the beads of a CSV file",
              .from_file = true,
-             .sets_radii = true,
-             .make = from_table}};
+             .sets_radii = true}};
 
 /// The row of a kind of start.
 constexpr const StartRow& start_row(StartKind kind) {

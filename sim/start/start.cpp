@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 
 #include "core/error.hpp"
+#include "sim/scene/starts.hpp"
 #include "sim/start/start_parts.hpp"
 
 namespace twincell::sim {
@@ -73,6 +75,23 @@ double normal(std::mt19937_64& engine) {
   return r * std::cos(2 * std::numbers::pi * uniform(engine));
 }
 
+/// The start that start.kind selects, as its function makes it.
+Start selected_start(const Scene& scene, Progress& progress) {
+  switch (scene.start) {
+    case StartKind::crystal_a:
+      return crystal_a(scene, progress);
+    case StartKind::crystal_b:
+      return crystal_b(scene, progress);
+    case StartKind::random:
+      return random_deposit(scene, progress);
+    case StartKind::trajectory:
+      return from_trajectory(scene, progress);
+    case StartKind::table:
+      return from_table(scene, progress);
+  }
+  throw std::logic_error("A kind of start has no function in selected_start.");
+}
+
 }  // namespace
 
 std::vector<double> draw_radii(const Scene& scene, std::size_t n) {
@@ -98,7 +117,7 @@ bool has_chance(const Scene& scene) {
 }
 
 Start make_start(const Scene& scene, Progress& progress) {
-  Start start = start_row(scene.start).make(scene, progress);
+  Start start = selected_start(scene, progress);
   if (scene.relax) {
     // Coincident centres have no direction of separation, and a bead beyond a wall belongs to another cell.
     constexpr double kRefused = 0.99, kTolerated = 1e-6;
