@@ -84,8 +84,8 @@ class Session:
         self.run("draw", n + b".h5", "-o", n + b".drawn.png", "--json", "-q")
         self.run("draw", n + b".h5", "-o", n + b".drawn.avi", "--frames", ":2", "--json", "-q")
         cell = n + b".frames/CELL.toml"
-        self.run("locate", n + b".frames", "-o", n + b".csv", "--overlay", n + b".png", "--debug-dir", n + b".debug",
-                 "--view", n + b".html", "--json", "-q")
+        self.run("locate", n + b".frames", "--frames", "0:2", "-o", n + b".csv", "--overlay", n + b".png",
+                 "--debug-dir", n + b".debug", "--view", n + b".html", "--json", "-q")
         self.run("track", n + b".frames", "--cell", cell, "-o", n + b".t.h5", "--csv", n + b".t.csv", "--json", "-q")
         self.run("compare", "--experiment", n + b".t.h5", "--simulation", n + b".h5", "-o", n + b".report", "--json",
                  "-q")

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 
 #include "sim/run/make_solver.hpp"
@@ -68,7 +69,10 @@ const std::string kScene =
 const std::string kPlane = "[cell]\nwidth = 8.0\n";
 const std::string kSpace = "[cell]\ndimension = 3\nwidth = 4.0\ndepth = 4.0\nplates = \"periodic\"\n";
 
-void expect_resumable(const std::string& laws, const std::string& integrator) {
+/// \param turn  selects the solver of each restart: over the integrators and the two cells every law meets
+/// every solver, from both states. That all solvers give the same bits is held by kernels_test and
+/// list_and_oracle_test.
+void expect_resumable(const std::string& laws, const std::string& integrator, std::size_t turn) {
   const TemporaryFolder folder;
   const std::string text = laws + integrator;
   const Scene scene = read_scene_text(kScene + laws, "s", {"time.integrator=" + integrator});
@@ -82,26 +86,27 @@ void expect_resumable(const std::string& laws, const std::string& integrator) {
   const RunState end = whole.state();
   std::vector<RunState> states{settling.states.back(), driving.states[driving.states.size() / 2]};
   std::size_t remembered = 0;
-  for (const SolverKind kind : {SolverKind::scalar, SolverKind::best, SolverKind::all_pairs})
-    for (const RunState& state : states) {
-      remembered += state.contacts.size();
-      write_checkpoint(folder / "state.h5", {scene.resolved, "{}", "p", {{3, "abc"}}, state});
-      const Checkpoint read = read_checkpoint(folder / "state.h5");
-      ASSERT_TRUE(same_bits(read.state, state)) << text;
-      ASSERT_EQ(read.segments.size(), 1U);
-      EXPECT_EQ(read.segments[0].frames, 3);
-      EXPECT_EQ(read.segments[0].sha256, "abc");
-      Simulation rest(scene, read.state, kind, 2);
-      Nowhere others;
-      rest.run(others);
-      EXPECT_TRUE(same_bits(rest.state(), end)) << text << " from step " << state.step;
-      // The frames after the restart, with their time averages; the first frame of a run has no time average.
-      ASSERT_GE(sink.means.size(), others.means.size());
-      for (std::size_t k = 1; k <= others.means.size(); ++k) {
-        const Vec3 &mean = others.means[others.means.size() - k], &truth = sink.means[sink.means.size() - k];
-        EXPECT_TRUE(mean == truth || (k == sink.means.size() && mean.hasNaN() && truth.hasNaN())) << text;
-      }
+  constexpr std::array kSolvers = {SolverKind::scalar, SolverKind::best, SolverKind::all_pairs};
+  for (const RunState& state : states) {
+    const SolverKind kind = kSolvers[turn++ % kSolvers.size()];
+    remembered += state.contacts.size();
+    write_checkpoint(folder / "state.h5", {scene.resolved, "{}", "p", {{3, "abc"}}, state});
+    const Checkpoint read = read_checkpoint(folder / "state.h5");
+    ASSERT_TRUE(same_bits(read.state, state)) << text;
+    ASSERT_EQ(read.segments.size(), 1U);
+    EXPECT_EQ(read.segments[0].frames, 3);
+    EXPECT_EQ(read.segments[0].sha256, "abc");
+    Simulation rest(scene, read.state, kind, 2);
+    Nowhere others;
+    rest.run(others);
+    EXPECT_TRUE(same_bits(rest.state(), end)) << text << " from step " << state.step;
+    // The frames after the restart, with their time averages; the first frame of a run has no time average.
+    ASSERT_GE(sink.means.size(), others.means.size());
+    for (std::size_t k = 1; k <= others.means.size(); ++k) {
+      const Vec3 &mean = others.means[others.means.size() - k], &truth = sink.means[sink.means.size() - k];
+      EXPECT_TRUE(mean == truth || (k == sink.means.size() && mean.hasNaN() && truth.hasNaN())) << text;
     }
+  }
   EXPECT_TRUE(remembered > 0 || !whole.plan().history) << text;
 }
 
@@ -177,10 +182,12 @@ TEST(Checkpoint, EveryLawGoesOnToTheBit) {
       "normal = \"hertz\"\nyoungs_modulus = 1e5\nviscous_time = 1e-4\nk_t = 2e3\n",
       "normal = \"velocity-dependent-restitution\"\nk_n = 1e4\nrestitution_fast = 0.8\nk_t = 2e3\nrolling = "
       "\"spring\"\nk_r = 100.0\nmu_r = 0.1\n"};
-  for (const std::string& cell : {kPlane, kSpace})
-    for (const std::string& law : laws)
+  for (const std::string& law : laws) {
+    std::size_t turn = 0;
+    for (const std::string& cell : {kPlane, kSpace})
       for (const char* integrator : {"verlet", "predicted", "split"})
-        expect_resumable(cell + "[contact]\n" + law, integrator);
+        expect_resumable(cell + "[contact]\n" + law, integrator, turn++);
+  }
 }
 
 }  // namespace
