@@ -19,7 +19,6 @@
 #include "analysis/report/windows_figure.hpp"
 #include "analysis/runs/pooling.hpp"
 #include "analysis/runs/windows.hpp"
-#include "calibration/drive/plate_drive.hpp"
 #include "cli/output.hpp"
 #include "cli/profile.hpp"
 #include "cli/results_summary.hpp"
@@ -30,6 +29,7 @@
 #include "core/error.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 #include "trajectory/plate.hpp"
+#include "trajectory/tracking_record.hpp"
 
 namespace twincell::cli {
 namespace {
@@ -170,7 +170,7 @@ std::string as_text(const std::vector<analysis::Window>& windows, const std::vec
 
 /// Notes a film whose drive is not the stated one: phases and heights of the plate are then wrong.
 void note_drive(const Common& common, const TrajectorySource& trajectory) {
-  if (const auto said = calibration::recorded_disagreement(trajectory.info()); said && !said->empty())
+  if (const auto said = recorded_disagreement(trajectory.info()); said && !said->empty())
     note(common, fmt::format("{}: the stated drive does not fit the film: {}.", trajectory.name(), *said));
 }
 

@@ -10,6 +10,7 @@
 #include "cli/verb.hpp"
 #include "core/error.hpp"
 #include "trajectory/formats/h5md_file.hpp"
+#include "trajectory/tracking_record.hpp"
 
 namespace twincell::cli {
 namespace {
@@ -26,7 +27,7 @@ struct CompareOptions {
 /// bed.
 std::string drive_disagreement(const H5mdReader& experiment) {
   const TrajectoryInfo& info = experiment.info();
-  if (auto recorded = calibration::recorded_disagreement(info)) return *recorded;
+  if (auto recorded = recorded_disagreement(info)) return *recorded;
   if (info.source != "experiment" || !info.drive) return {};
   calibration::BedSteps bed(info);
   Frame frame;

@@ -11,12 +11,12 @@
 
 #include "analysis/runs/pooling.hpp"
 #include "core/atomic_file.hpp"
-#include "core/json_view.hpp"
 #include "core/plural.hpp"
 #include "imaging/camera/noise_matched_camera.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/stack/representative_frames.hpp"
 #include "trajectory/formats/h5md_file.hpp"
+#include "trajectory/tracking_record.hpp"
 #include "twin/sweep_results.hpp"
 #include "twin/virtual_experiment.hpp"
 
@@ -168,28 +168,20 @@ std::optional<double> amplitude_error_of(const TrajectoryInfo& info, const std::
 /// \param is_named whether the user named the stack
 void show_frames(const TrajectoryInfo& info, const fs::path& stack, bool is_named, analysis::Run& run,
                  std::vector<std::string>& notes) {
-  if (info.tracking_json.empty()) return;  // not made by `track`
-  double rotation_deg = 0, distortion = 0;
+  std::optional<TrackedCamera> camera;
   try {
-    const auto camera = JsonView::parse(info.tracking_json, run.name).find("camera");
-    if (!camera) return;  // an older version of `track`
-    constexpr double kLargest_px = 1e9;
-    const auto origin = camera->at("origin_px").elements(2);
-    run.show.camera = {.pixels_per_sigma = camera->at("pixels_per_sigma").number_in(1e-3, kLargest_px),
-                       .origin_x = origin[0].number_in(-kLargest_px, kLargest_px),
-                       .origin_y = origin[1].number_in(-kLargest_px, kLargest_px),
-                       .width = static_cast<int>(camera->at("width_px").integer(1, 1 << 30)),
-                       .height = static_cast<int>(camera->at("height_px").integer(1, 1 << 30))};
-    if (const auto error = camera->find("scale_error_px"))
-      run.scale_error = error->number_in(0, kLargest_px) / run.show.camera->pixels_per_sigma;
-    if (const auto turned = camera->find("rotation_deg")) rotation_deg = turned->number_in(-180, 180);
-    if (const auto bent = camera->find("distortion")) distortion = bent->number_in(-1, 1);
+    camera = tracked_camera(info, run.name);
   } catch (const InputError& e) {
-    run.show.camera.reset();
     notes.push_back(
         fmt::format("the record of the camera is damaged, so its frames are not shown: {}", e.what()));
-    return;
   }
+  if (!camera) return;
+  run.show.camera = {.pixels_per_sigma = camera->pixels_per_sigma,
+                     .origin_x = camera->origin_x_px,
+                     .origin_y = camera->origin_y_px,
+                     .width = camera->width_px,
+                     .height = camera->height_px};
+  if (camera->scale_error_px) run.scale_error = *camera->scale_error_px / camera->pixels_per_sigma;
   if (stack.empty()) return;
   if (is_named) require_size(stack, *run.show.camera, run.name);
   std::vector<std::int64_t> numbers;
@@ -197,7 +189,8 @@ void show_frames(const TrajectoryInfo& info, const fs::path& stack, bool is_name
   try {
     const auto frames = imaging::open_frames(stack);
     constexpr int kLongest_px = 800;
-    run.show.pictures = imaging::picture_frames(*frames, numbers, kLongest_px, rotation_deg, distortion);
+    run.show.pictures =
+        imaging::picture_frames(*frames, numbers, kLongest_px, camera->rotation_deg, camera->distortion);
   } catch (const InputError& e) {
     notes.push_back(fmt::format("{}: the report shows no camera frames of it: {}", run.name, e.what()));
   }
@@ -264,9 +257,7 @@ LikeCamera camera_of(const TrajectoryInfo& experiment, const fs::path& stack) {
   imaging::CameraOptions camera;
   if (experiment.scale.pixels_per_sigma) camera.pixels_per_sigma = *experiment.scale.pixels_per_sigma;
   if (stack.empty()) return {camera, ", the camera's default noise"};
-  const auto tracking = nlohmann::json::parse(experiment.tracking_json, nullptr, false);
-  const nlohmann::json::json_pointer bright_key("/camera/bright");
-  const bool bright = tracking.contains(bright_key) && tracking.at(bright_key) == true;
+  const bool bright = tracked_as_bright(experiment);
   try {
     camera = imaging::with_noise_of(*imaging::open_frames(stack), camera.pixels_per_sigma, bright, camera);
   } catch (const InputError&) {  // show_frames() has already reported the missing frames

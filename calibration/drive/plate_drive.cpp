@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
@@ -13,8 +14,8 @@
 #include "calibration/drive/drive_fit.hpp"
 #include "core/constants.hpp"
 #include "core/error.hpp"
-#include "core/json_text.hpp"
 #include "imaging/stack/open_frames.hpp"
+#include "trajectory/tracking_record.hpp"
 
 namespace twincell::calibration {
 namespace {
@@ -310,23 +311,14 @@ void look_for_plate_elsewhere(DriveCheck& check, const imaging::CellDescription&
 }  // namespace
 
 void record(const DriveCheck& check, TrajectoryInfo& info) {
-  auto tracking = nlohmann::json::parse(info.tracking_json);
+  nlohmann::json members;
   if (check.by.empty())
-    tracking["drive_check"] = {{"not_comparable", check.not_comparable}};
+    members["drive_check"] = {{"not_comparable", check.not_comparable}};
   else
-    tracking["drive_check"] = {
+    members["drive_check"] = {
         {"by", check.by}, {"amplitude", check.amplitude}, {"amplitude_error", check.amplitude_error}};
-  if (!check.disagreement.empty()) tracking["drive_disagreement"] = check.disagreement;
-  info.tracking_json = json_text(tracking);
-}
-
-std::optional<std::string> recorded_disagreement(const TrajectoryInfo& info) {
-  const auto tracking = nlohmann::json::parse(info.tracking_json, nullptr, false);
-  if (!tracking.is_object()) return std::nullopt;
-  if (tracking.contains("drive_disagreement"))
-    return tracking["drive_disagreement"].is_string() ? tracking["drive_disagreement"].get<std::string>()
-                                                      : "the stated drive does not fit the film";
-  return tracking.contains("drive_check") ? std::optional(std::string()) : std::nullopt;
+  if (!check.disagreement.empty()) members["drive_disagreement"] = check.disagreement;
+  add_to_tracking(info, members);
 }
 
 DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::filesystem::path& stack,
@@ -370,16 +362,12 @@ namespace {
 
 /// \param shift frames by which the bed is later in the cycle than its phases state
 std::string phase_disagreement(int shift, const TrajectoryInfo& info) {
-  const auto tracking = nlohmann::json::parse(info.tracking_json, nullptr, false);
   const int n = info.phases_per_cycle;
-  const nlohmann::json::json_pointer first("/phase_lock/first_phase");
-  if (tracking.is_object() && tracking.contains(first)) {
-    const int stated = tracking[first].get<int>();
+  if (const std::optional<int> stated = tracked_first_phase(info))
     return fmt::format(
         "the bed on its plate shows the first frame at phase {} of {}, the stated first phase is {} "
         "(camera.first_phase, --first-phase)",
-        ((stated + shift) % n + n) % n, n, stated);
-  }
+        ((*stated + shift) % n + n) % n, n, *stated);
   return fmt::format("the bed on its plate is {} of {} phases {} in the cycle than stated", std::abs(shift),
                      n, shift > 0 ? "later" : "earlier");
 }

@@ -50,9 +50,6 @@ struct DriveCheck {
 /// "amplitude_error" or with "not_comparable", and "drive_disagreement" if there is one. `compare` refuses a
 /// trajectory with "drive_disagreement".
 void record(const DriveCheck& check, TrajectoryInfo& info);
-/// The clause that record() has stored: how the drive in the film differs from the stated one; empty if it
-/// does not. No value if there was no check.
-std::optional<std::string> recorded_disagreement(const TrajectoryInfo& info);
 
 /// Compares the stated drive with the plate's edge in the first three cycles, at least 40 frames: the
 /// amplitude, the period in frames, and omega if frame rate and scale are known. A difference counts if it
