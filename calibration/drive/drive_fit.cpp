@@ -575,7 +575,9 @@ namespace {
 /// fit_drive() without the frames that are repeated, and without the stretches out of lock.
 DriveFit fit_each(const std::vector<double>& heights, const DriveFitOptions& options) {
   constexpr double kMinFollowedShare = 0.97;  // of the frames, by a fit without missing frames
-  constexpr std::size_t kMinRunOffFit = 3;    // consecutive frames that suggest missing ones
+  // Consecutive frames that suggest missing ones: off the fit they may cost more than a slip.
+  constexpr std::size_t kMinRunOffFit = 2;
+  static_assert(kMinRunOffFit * imaging::kMaxFrameCost > imaging::kSlipCost);
   DriveFit lock;
   Timed timed = first_attempt(heights, options.frames_per_cycle);
   const Attempt& a = timed.attempt;

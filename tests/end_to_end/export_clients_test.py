@@ -58,6 +58,15 @@ def mdanalysis(twincell, folder, truth):
     low = -1.5  # MDAnalysis shifts positions by the lower corner of the box: here A below the plate's mean height
     same("dump x", [ts.positions[:, 0].copy() for ts in dump.trajectory], truth["x"], 1e-5)
     same("dump y", [ts.positions[:, 1].copy() + low for ts in dump.trajectory], truth["z"], 1e-5)
+    # The trajectory itself, with the beads of the GSD file as topology: one call, no empty universe.
+    shutil.copy(folder / "run.h5", folder / "run.h5md")
+    own = MDAnalysis.Universe(str(export(twincell, "gsd", "run.gsd", folder)), str(folder / "run.h5md"), convert_units=False)
+    same("H5MD x", [ts.positions[:, 0].copy() for ts in own.trajectory], truth["x"], 1e-6)
+    same("H5MD z", [ts.positions[:, 2].copy() for ts in own.trajectory], truth["z"], 1e-5)
+    same("H5MD time", [ts.time for ts in own.trajectory], truth["time"], 0)
+    same("GSD radius", own.atoms.radii, 0.5, 0)
+    same("GSD mass", own.atoms.masses, 1, 0)
+    assert set(own.atoms.types) == {"bead", "tracer"}, set(own.atoms.types)
 
 
 def lammps(twincell, folder, truth):
