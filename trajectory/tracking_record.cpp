@@ -53,6 +53,13 @@ std::optional<int> tracked_first_phase(const TrajectoryInfo& info) {
                                                        : std::nullopt;
 }
 
+std::optional<double> tracked_amplitude_error(const TrajectoryInfo& info) {
+  const nlohmann::json amplitude = member_of(info, "/drive_check/amplitude"),
+                       error = member_of(info, "/drive_check/amplitude_error");
+  if (!amplitude.is_number() || !error.is_number() || amplitude <= 0 || error < 0) return std::nullopt;
+  return error.get<double>() / amplitude.get<double>();
+}
+
 std::optional<std::string> recorded_disagreement(const TrajectoryInfo& info) {
   const nlohmann::json report = report_of(info);
   if (!report.is_object()) return std::nullopt;

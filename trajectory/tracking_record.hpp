@@ -32,6 +32,9 @@ bool tracked_as_bright(const TrajectoryInfo& info);
 /// Phase of the first frame that was stated or found, a number of TrajectoryInfo::phases_per_cycle.
 std::optional<int> tracked_first_phase(const TrajectoryInfo& info);
 
+/// Relative standard error of the amplitude of the drive as the film shows it; absent if it was not measured.
+std::optional<double> tracked_amplitude_error(const TrajectoryInfo& info);
+
 /// The clause that says how the drive in the film differs from the stated one; empty if it does not. No value
 /// if there was no check.
 std::optional<std::string> recorded_disagreement(const TrajectoryInfo& info);

@@ -150,20 +150,6 @@ void require_size(const fs::path& stack, const analysis::PictureFrame& camera,
                   stack.string(), width, height, experiment, camera.width, camera.height));
 }
 
-/// The relative error of the amplitude of the drive as it was measured in the film, if it was.
-std::optional<double> amplitude_error_of(const TrajectoryInfo& info, const std::string& name) {
-  if (info.tracking_json.empty()) return std::nullopt;  // not made by `track`
-  try {
-    const auto check = JsonView::parse(info.tracking_json, name).find("drive_check");
-    if (!check || !check->has("amplitude_error")) return std::nullopt;
-    const double amplitude = check->at("amplitude").number_in(0, 1e9);
-    if (amplitude == 0) return std::nullopt;
-    return check->at("amplitude_error").number_in(0, 1e9) / amplitude;
-  } catch (const InputError&) {  // a damaged record
-    return std::nullopt;
-  }
-}
-
 /// Adds the camera's scale with its error and the frames at the snapshots of an experiment.
 /// \param is_named whether the user named the stack
 void show_frames(const TrajectoryInfo& info, const fs::path& stack, bool is_named, analysis::Run& run,
@@ -305,7 +291,7 @@ std::vector<analysis::Run> analyse(const Sides& sides, const ComparingOptions& o
     for (const std::size_t f : analysis::representative_frames(trajectory, most))
       run.show.snapshots.push_back(analysis::snapshot(trajectory, f, run.cutoff));
     if (run.side == analysis::Side::experiment) {
-      run.amplitude_error = amplitude_error_of(trajectory.info(), run.name);
+      run.amplitude_error = tracked_amplitude_error(trajectory.info());
       show_frames(trajectory.info(), stack_behind(options, trajectory, i), !options.stacks.empty(), run,
                   notes);
     }

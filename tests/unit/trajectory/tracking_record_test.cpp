@@ -48,11 +48,23 @@ TEST(TrackingRecord, WhatIsNotStoredIsAbsent) {
     const TrajectoryInfo info = tracked(report);
     EXPECT_FALSE(tracked_as_bright(info)) << report;
     EXPECT_EQ(tracked_first_phase(info), std::nullopt) << report;
+    EXPECT_EQ(tracked_amplitude_error(info), std::nullopt) << report;
     EXPECT_EQ(recorded_disagreement(info), std::nullopt) << report;
   }
   EXPECT_FALSE(tracked_camera(tracked(""), "e.h5"));
   EXPECT_FALSE(tracked_camera(tracked("{}"), "e.h5"));
   EXPECT_THROW(static_cast<void>(tracked_camera(tracked("no JSON"), "e.h5")), InputError);
+}
+
+TEST(TrackingRecord, TheErrorOfTheAmplitudeIsRelative) {
+  const auto error = [](const std::string& amplitude, const std::string& its_error) {
+    return tracked_amplitude_error(tracked(R"({"drive_check": {"amplitude": )" + amplitude +
+                                           R"(, "amplitude_error": )" + its_error + "}}"));
+  };
+  EXPECT_DOUBLE_EQ(error("1.5", "0.003").value(), 0.002);
+  EXPECT_EQ(error("0", "0.003"), std::nullopt);
+  EXPECT_EQ(error("1.5", "-1"), std::nullopt);
+  EXPECT_EQ(error("1.5", "\"small\""), std::nullopt);
 }
 
 TEST(TrackingRecord, ADamagedMemberIsNotBelieved) {
