@@ -12,6 +12,7 @@
 #include "core/constants.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
+#include "imaging/refine/picture_evidence.hpp"
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/track/locate_stack.hpp"
 
@@ -152,6 +153,31 @@ std::vector<SizedBead> objects_of(const std::vector<imaging::Detection>& dropped
   return objects;
 }
 
+/// Moves the located discs of further sizes that are one or two a frame, such as an intruder, from the beads
+/// to the others, with their radii. \param n_sizes  the first is that of the beads \param size_of
+/// [frames][beads] index of the nearest size
+void separate_few_larger(BeadFrames& beads, std::size_t n_sizes,
+                         const std::vector<std::vector<std::size_t>>& size_of) {
+  constexpr double kMostInFrame = 2, kMaxShareOfBeads = 0.1;
+  double all = 0;
+  for (const auto& frame : beads.frames) all += static_cast<double>(frame.size());
+  for (std::size_t size = 1; size < n_sizes; ++size) {
+    double n = 0, most = 0;
+    for (const auto& frame : size_of) {
+      const auto here = static_cast<double>(std::count(frame.begin(), frame.end(), size));
+      n += here, most = std::max(most, here);
+    }
+    if (most > kMostInFrame || n > kMaxShareOfBeads * all) continue;
+    for (std::size_t f = 0; f < beads.frames.size(); ++f) {
+      std::vector<SizedBead> kept;
+      for (std::size_t i = 0; i < beads.frames[f].size(); ++i)
+        (size_of[f][i] == size ? beads.others[f] : kept).push_back(beads.frames[f][i]);
+      beads.counts[f] -= beads.frames[f].size() - kept.size();
+      beads.frames[f] = std::move(kept);
+    }
+  }
+}
+
 }  // namespace
 
 BeadFrames locate_beads(imaging::FrameSource& frames, const imaging::LocatorOptions& options,
@@ -187,6 +213,9 @@ BeadFrames locate_beads(imaging::FrameSource& frames, const imaging::LocatorOpti
   const imaging::LocatorOptions locator = imaging::configure_locator(ahead, options, threads).locator;
   constexpr std::int64_t kAspectFrames = 12;
   imaging::RimAspect aspect;
+  std::vector<double> radii_px = {0.5 * locator.diameter_px};
+  for (const double other : locator.other_diameters_px) radii_px.push_back(0.5 * other);
+  std::vector<std::vector<std::size_t>> size_of;
   imaging::locate_stack(
       ahead, locator, threads,
       [&](std::int64_t frame, const cv::Mat& grey, const imaging::Located& found) {
@@ -194,8 +223,10 @@ BeadFrames locate_beads(imaging::FrameSource& frames, const imaging::LocatorOpti
         out.frames.emplace_back();
         out.counts.push_back(found.beads.size());
         out.others.push_back(objects_of(found.dropped, locator.diameter_px));
+        size_of.emplace_back();
         for (const imaging::Detection& b : found.beads) {
           if (b.edge) continue;
+          size_of.back().push_back(imaging::nearest_size(b.radius, radii_px));
           SizedBead bead{b.x, b.y, b.radius, b.sigma_radius};
           if (lens) {
             const imaging::PixelPoint at = lens->ideal_from_picture({b.x, b.y});
@@ -205,6 +236,8 @@ BeadFrames locate_beads(imaging::FrameSource& frames, const imaging::LocatorOpti
         }
       },
       progress);
+  // Discs of a size that the user named are beads.
+  if (options.other_diameters_px.empty()) separate_few_larger(out, radii_px.size(), size_of);
   out.aspect = aspect.value();
   return out;
 }
@@ -248,10 +281,11 @@ std::string others_in_words(const BeadFrames& beads) {
   const SizedBead& at = beads.others[first].front();
   return fmt::format(
       "{:g} object{} of another size than the beads, as an intruder, {} in {} of {} frames, the first at "
-      "x, y = {:.0f}, {:.0f} px; the numbers here leave such objects out (twincell locate --diameter D1 D2 "
+      "x, y = {:.0f}, {:.0f} px{}; the numbers here leave such objects out (twincell locate --diameter D1 D2 "
       "locates discs of two sizes)",
       upper_median(numbers), upper_median(numbers) == 1 ? "" : "s",
-      upper_median(numbers) == 1 ? "is seen" : "are seen", with, beads.others.size(), at.x, at.y);
+      upper_median(numbers) == 1 ? "is seen" : "are seen", with, beads.others.size(), at.x, at.y,
+      at.radius > 0 ? fmt::format(", {:.4g} px in diameter", 2 * at.radius) : "");
 }
 
 SizeStatistics count_beads(const BeadFrames& beads) {

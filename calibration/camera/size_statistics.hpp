@@ -27,8 +27,9 @@ struct SizedBead {
 struct BeadFrames {
   std::vector<std::vector<SizedBead>> frames;  ///< [frames][beads]
   std::vector<std::size_t> counts;             ///< [frames], beads cut by the border included
-  /// [frames] positions of dark objects of another size, which do not count as beads; their radius is 0.
-  /// Discs fitted within a bead diameter of their mean position are one object, such as a larger disc.
+  /// [frames] objects of another size, which do not count as beads. One or two discs a frame of a larger size
+  /// that the settings found, such as an intruder, have their radius; that of rejected discs is 0. Rejected
+  /// discs within a bead diameter of their mean position are one object.
   std::vector<std::vector<SizedBead>> others;
   /// Systematic errors of the diameters beyond their noise: of the mean, and from disc to disc, which depends
   /// on the contacts of each disc. 0: no systematic error.
