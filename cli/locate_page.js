@@ -97,7 +97,7 @@
     svg.setAttribute('viewBox', `${f.x - 0.5} ${f.y - 0.5} ${f.width} ${f.height}`);
     svg.style.width = 100 * Number($('zoom').value) + '%';
     svg.style.maxHeight = $('zoom').value === '1' ? '41rem' : 'none';
-    svgOf('image', {class: 'raw', href: f.picture, x: f.x - 0.5, y: f.y - 0.5, width: f.width, height: f.height, preserveAspectRatio: 'none'}, svg);
+    svgOf('image', {class: 'raw', href: $('layer-residual').checked ? f.residual : f.picture, x: f.x - 0.5, y: f.y - 0.5, width: f.width, height: f.height, preserveAspectRatio: 'none'}, svg);
     const dropped = svgOf('g', {}, svg), kept = svgOf('g', {}, svg), counts = {};
     set.frames[state.frame].forEach((c, k) => {
       const kind = classOf(c, verdict[k]), isKept = verdict[k] === kBead;
@@ -210,7 +210,7 @@
   $('score').addEventListener('input', () => { state.score = Number($('score').value); draw(); });
   $('polarity').addEventListener('change', () => choose(Math.max(0, sets.findIndex(s => s.bright === ($('polarity').value === 'bright')))));
   $('reset').addEventListener('click', () => choose(0, run.judge.min_score));
-  for (const id of ['zoom', 'layer-kept', 'layer-dropped']) $(id).addEventListener('change', draw);
+  for (const id of ['zoom', 'layer-kept', 'layer-dropped', 'layer-residual']) $(id).addEventListener('change', draw);
   $('picture').addEventListener('mouseover', event => {
     const circle = event.target.closest('circle');
     if (circle) $('readout').textContent = circle.querySelector('title').textContent;

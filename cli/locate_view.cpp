@@ -11,6 +11,7 @@
 #include "cli/locating_options.hpp"
 #include "cli/settings_table.hpp"
 #include "core/escape.hpp"
+#include "imaging/refine/picture_evidence.hpp"
 #include "imaging/settings/settings_choice.hpp"
 #include "imaging/settings/settings_doubts.hpp"
 #include "imaging/track/encoded_frame.hpp"
@@ -96,6 +97,7 @@ constexpr std::string_view kBody = R"(
 <div class="controls">
 <label><input type="checkbox" id="layer-kept" checked> beads</label>
 <label><input type="checkbox" id="layer-dropped" checked> dropped candidates</label>
+<label><input type="checkbox" id="layer-residual"> residual</label>
 </div>
 <div class="window" tabindex="0" aria-label="frame, scrolls"><svg id="picture" class="beads" role="img" aria-label="frame with beads and dropped candidates"></svg></div>
 <p id="readout" class="quiet" aria-live="polite"></p>
@@ -128,6 +130,10 @@ the dropped candidates of the run. If diameter or score change, the stored candi
 program: diameter within 20 % (more if the sizes are spread), score, overlap. The polarity and other tried settings
 have stored candidates of their own.
 Candidates that were never proposed, or that were dropped before they were fitted, do not return; the command finds them.</p>
+<p>The residual is the frame less the picture of the beads of the run: one profile for each size, and a level for each bead.
+Between the beads it is the difference to the pixels on a straight line. Grey is up to twice the noise; white and black are
+a quarter of the range of the frame above and below. A bead that was missed leaves its rim, one in the wrong place or of the
+wrong size leaves a white and a black crescent or ring.</p>
 </details>
 )";
 
@@ -169,13 +175,25 @@ void LocateView::add(std::int64_t number, const cv::Mat& grey, const imaging::Lo
                        {"y", region_.corner().y},
                        {"width", grey.cols},
                        {"height", grey.rows},
-                       {"picture", analysis::data_uri(picture.type, picture.bytes)}});
+                       {"picture", analysis::data_uri(picture.type, picture.bytes)},
+                       {"residual", residual_of(grey, located)}});
   beads_ += located.beads.size();
   dropped_ += located.dropped.size();
   stored_.front().frames.push_back(candidates_json(located));
   for (std::size_t k = 1; k < stored_.size(); ++k)
     stored_[k].frames.push_back(
         candidates_json(imaging::in_whole_picture(imaging::locate(grey, stored_[k].options), region_)));
+}
+
+std::string LocateView::residual_of(const cv::Mat& grey, const imaging::Located& located) const {
+  const imaging::LocatorOptions& of_run = stored_.front().options;
+  std::vector<double> radii = {0.5 * of_run.diameter_px};
+  for (const double d : of_run.other_diameters_px) radii.push_back(0.5 * d);
+  std::vector<imaging::Detection> beads = located.beads;
+  for (imaging::Detection& b : beads) b.x -= region_.corner().x, b.y -= region_.corner().y;
+  const imaging::EncodedFrame picture =
+      imaging::encoded_residual(grey, imaging::residual_picture(grey, beads, radii));
+  return analysis::data_uri(picture.type, picture.bytes);
 }
 
 json LocateView::data(const std::string& command) const {

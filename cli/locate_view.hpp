@@ -52,6 +52,8 @@ class LocateView {
     imaging::LocatorOptions options;
     nlohmann::json frames = nlohmann::json::array();  ///< list of candidates for each frame
   };
+  /// The residual picture of a frame, as the address of the page.
+  [[nodiscard]] std::string residual_of(const cv::Mat& grey, const imaging::Located& located) const;
   [[nodiscard]] nlohmann::json data(const std::string& command) const;
 
   imaging::LocatingRequest request_;

@@ -55,24 +55,37 @@ std::vector<cv::Point> steps_of(double radius) {
   return steps;
 }
 
-/// e_0 of a pixel: the smallest rms difference, over sqrt 2, to the two pixels at a distance on a straight
-/// line through it. In uniform areas the smallest of several would be below the noise.
-double without_discs(const cv::Mat1f& grey, double noise, int x, int y, const std::vector<cv::Point>& steps) {
-  constexpr double kTypical = 0.45;  // median of the square of a standard normal variable
+/// The description of a pixel by its neighbours.
+struct Neighbourhood {
+  float squares = HUGE_VALF;  ///< half of the mean square of the differences to them; infinite: it has none
+  float difference = 0;       ///< to their mean
+};
+
+/// The two pixels at a distance on a straight line through a pixel, for the line with the smallest squares.
+Neighbourhood best_line(const cv::Mat1f& grey, int x, int y, const std::vector<cv::Point>& steps) {
   const float here = grey(y, x);
-  float least = HUGE_VALF;
+  Neighbourhood best;
   for (const cv::Point& step : steps) {
-    float squares = 0;
+    float squares = 0, sum = 0;
     int seen = 0;
     for (const int times : {-2, -1, 1, 2}) {
       const int i = x + times * step.x, j = y + times * step.y;
       if (i < 0 || j < 0 || i >= grey.cols || j >= grey.rows) continue;
       const float e = grey(j, i) - here;
       squares += e * e;
+      sum += e;
       ++seen;
     }
-    if (seen > 0) least = std::min(least, squares / static_cast<float>(2 * seen));
+    const auto n = static_cast<float>(seen);
+    if (seen > 0 && squares / (2 * n) < best.squares) best = {squares / (2 * n), -sum / n};
   }
+  return best;
+}
+
+/// e_0 of a pixel. In uniform areas the smallest of several would be below the noise.
+double without_discs(const cv::Mat1f& grey, double noise, int x, int y, const std::vector<cv::Point>& steps) {
+  constexpr double kTypical = 0.45;  // median of the square of a standard normal variable
+  const float least = best_line(grey, x, y, steps).squares;
   const double floor = kTypical * noise * noise;
   return std::sqrt(std::isfinite(least) ? std::max(floor, static_cast<double>(least)) : floor);
 }
@@ -104,6 +117,27 @@ class Explanation {
   }
 
   PictureEvidence evidence() {
+    fit();
+    PictureEvidence result = gains();
+    result.rims = shift_rims();
+    return result;
+  }
+
+  cv::Mat1f residuals() {
+    fit();
+    cv::Mat1f left(grey_.size());
+    const std::vector<cv::Point>& of_ground = sizes_.front().steps;
+    for (int y = 0; y < grey_.rows; ++y)
+      for (int x = 0; x < grey_.cols; ++x) left(y, x) = best_line(grey_, x, y, of_ground).difference;
+    over_owned([&](int x, int y, std::size_t b, std::size_t k) {
+      if (sizes_[size_of_[b]].used[k]) left(y, x) = static_cast<float>(residual(x, y));
+    });
+    return left;
+  }
+
+ private:
+  /// Learns the profiles, the levels of the discs and the scales of the residuals.
+  void fit() {
     for (int round = 0; round < kRounds; ++round) {
       learn_profiles(round == 0);
       render();
@@ -111,12 +145,8 @@ class Explanation {
       render();
     }
     measure();
-    PictureEvidence result = gains();
-    result.rims = shift_rims();
-    return result;
   }
 
- private:
   /// Calls use(x, y, r - R) for the pixels of the picture that a disc reaches.
   template <class Use>
   void over(const Detection& d, Use&& use) const {
@@ -478,6 +508,14 @@ PictureEvidence picture_evidence(const cv::Mat& grey, const std::vector<Detectio
   cv::Mat1f levels;
   grey.convertTo(levels, CV_32F);
   return Explanation(levels, discs, radii_px, neighbour_radius_px, walls).evidence();
+}
+
+cv::Mat1f residual_picture(const cv::Mat& grey, const std::vector<Detection>& discs,
+                           const std::vector<double>& radii_px) {
+  if (grey.empty()) return {};
+  cv::Mat1f levels;
+  grey.convertTo(levels, CV_32F);
+  return Explanation(levels, discs, radii_px, 0, {}).residuals();
 }
 
 }  // namespace twincell::imaging

@@ -72,6 +72,12 @@ PictureEvidence picture_evidence(const cv::Mat& grey, const std::vector<Detectio
 ///     seem straight, and the evidence for them too small
 double possible_evidence(const cv::Mat& grey, double neighbour_radius_px);
 
+/// What discs leave of a picture, grey levels: e_1 where their profile is used; elsewhere, the difference to
+/// the pixels on the straight line whose rms is e_0, so that light, walls and straight edges leave nothing
+/// and a disc that is missing leaves its rim. \param discs, radii_px as for picture_evidence() Pure.
+cv::Mat1f residual_picture(const cv::Mat& grey, const std::vector<Detection>& discs,
+                           const std::vector<double>& radii_px);
+
 /// Index of the size, among at least one, to which a radius has the smallest ratio.
 std::size_t nearest_size(double radius, const std::vector<double>& radii);
 

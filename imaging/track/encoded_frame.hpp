@@ -20,4 +20,11 @@ struct EncodedFrame {
 /// \throws RunError if it cannot be encoded
 EncodedFrame encoded_frame(const cv::Mat& grey);
 
+/// A picture of residuals, encoded likewise: middle grey is up to twice the noise of the frame, which would
+/// cost most of the bytes; white and black are a quarter of its range of grey levels above and below, and
+/// more.
+/// \pre both have the same size and are not empty
+/// \throws RunError if it cannot be encoded
+EncodedFrame encoded_residual(const cv::Mat& grey, const cv::Mat1f& residual);
+
 }  // namespace twincell::imaging

@@ -67,6 +67,29 @@ def check_picture(browser):
     assert dark[0] < 0.75 * dark[1], f"centres up to {dark[0]}, background {dark[1]}"
 
 
+def check_residual(browser):
+    """The residual takes the place of the frame: grey inside the beads, whose profile describes them; not everywhere."""
+    shown = "document.querySelector('#picture image').getAttribute('href')"
+    frame = browser.value(shown)
+    levels = """(async () => { const image = document.querySelector('#picture image'), bitmap = new Image();
+      bitmap.src = image.getAttribute('href'); await bitmap.decode();
+      const canvas = document.createElement('canvas'); canvas.width = bitmap.width; canvas.height = bitmap.height;
+      const pen = canvas.getContext('2d'); pen.drawImage(bitmap, 0, 0);
+      const beads = [...document.querySelectorAll('#picture circle')].map(c =>
+        pen.getImageData(Math.floor(+c.getAttribute('cx')), Math.floor(+c.getAttribute('cy')), 1, 1).data[0]);
+      const all = pen.getImageData(0, 0, bitmap.width, bitmap.height).data.filter((v, k) => k % 4 === 0);
+      return [beads, all.filter(v => Math.abs(v - 128) > 32).length / all.length, bitmap.width, +image.getAttribute('width')] })()"""
+    beads, far, _, _ = browser.value(levels)
+    assert beads and sum(abs(v - 128) > 32 for v in beads) > 0.9 * len(beads), "dark beads in the frame"
+    browser.click("document.getElementById('layer-residual')")
+    assert browser.value(shown) != frame
+    beads, far, width, shown_width = browser.value(levels)
+    assert sum(abs(v - 128) <= 16 for v in beads) > 0.9 * len(beads), beads
+    assert 0.01 < far < 0.2 and width == shown_width, (far, width, shown_width)
+    browser.click("document.getElementById('layer-residual')")
+    assert browser.value(shown) == frame
+
+
 def check_sliders(browser, program, folder):
     """Sliders change at once what is kept, with a reason, and the command says the same as the program finds."""
     slide(browser, "score", 1)
@@ -121,12 +144,15 @@ def main():
             check_fit(browser, width)
             check_run(browser, program, scratch)
             check_picture(browser)
+            check_residual(browser)
             check_sliders(browser, program, scratch)
             check_hypotheses(browser)
             if width == 1280:
                 check_hover(browser)
             if pictures:
                 browser.picture(pictures / f"locate_view_{width}.png")
+                browser.click("document.getElementById('layer-residual')")
+                browser.picture(pictures / f"locate_view_residual_{width}.png")
     print("the page was used at 1280 and 390 px; nothing was asked of the outside")
 
 

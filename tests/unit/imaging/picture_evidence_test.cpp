@@ -105,6 +105,33 @@ TEST(PictureEvidence, OfTheTrueDiscsIsNearlyThePossible) {
   EXPECT_EQ(possible_evidence(cv::Mat1f(0, 0), kRadius), 0);
 }
 
+// The true discs leave the noise; a missing disc leaves itself; one that is moved by 1 px leaves a dipole of
+// the slope of its profile, 8 levels a px.
+TEST(PictureEvidence, ResidualsShowWhatTheDiscsLeave) {
+  const cv::Mat1f grey = cones(kCentres);
+  const auto mean_in = [](const cv::Mat1f& picture, const cv::Point2d& c, double dx, double power) {
+    double sum = 0, n = 0;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        const double far = std::hypot(x - c.x, y - c.y);
+        if (far > kRadius - 2 || far < 4 || (x - c.x) * dx < 0.7 * far * std::abs(dx)) continue;
+        sum += std::pow(static_cast<double>(picture(y, x)), power), ++n;
+      }
+    return sum / n;
+  };
+  const cv::Mat1f left = residual_picture(grey, discs_at(kCentres, kRadius), {kRadius});
+  for (const cv::Point2d& c : kCentres) EXPECT_NEAR(std::sqrt(mean_in(left, c, 0, 2)), kNoise, 0.15 * kNoise);
+  std::vector<cv::Point2d> others = kCentres;
+  others[1].x += 1;
+  others.pop_back();
+  const cv::Mat1f other = residual_picture(grey, discs_at(others, kRadius), {kRadius});
+  EXPECT_GT(std::sqrt(mean_in(other, kCentres[3], 0, 2)), 10 * kNoise);
+  EXPECT_NEAR(mean_in(other, kCentres[1], 1, 1), 8 * 0.85, 2);
+  EXPECT_NEAR(mean_in(other, kCentres[1], -1, 1), -8 * 0.85, 2);
+  EXPECT_TRUE(residual_picture(cv::Mat1f(0, 0), {}, {kRadius}).empty());
+  EXPECT_EQ(residual_picture(grey, {}, {kRadius}).size(), grey.size());
+}
+
 // Discs of another size or place lose.
 TEST(PictureEvidence, IsLargestForTheTrueDiscs) {
   const cv::Mat1f grey = cones(kCentres);
