@@ -133,7 +133,7 @@ void lead(sweep::Schedule& schedule, const sweep::Plan& plan, const sweep::Store
       if (at[0] && own.wait_for(std::chrono::seconds(0)) == std::future_status::ready) keep(0, own.get());
       const sweep::Counts counts = schedule.counts();
       const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-      watch.look(counts, work > 0 ? counts.work_left * seconds / work : kUnknown);
+      watch.look(counts, work > 0 ? counts.most_work * seconds / work : kUnknown);
     }
   } catch (...) {
     closing = true;

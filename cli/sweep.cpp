@@ -109,6 +109,8 @@ nlohmann::json as_json(const Counts& counts, const fs::path& folder, bool all) {
           {"done", counts.done},
           {"failed", counts.failed},
           {"particle_steps_left", counts.work_left},
+          {"most_points", counts.most},
+          {"most_particle_steps_left", counts.most_work},
           {"complete", all}};
 }
 
@@ -157,12 +159,17 @@ void run_plan(const SweepOptions& options, const Common& common) {
   document["warnings"] = warnings;
   print_result(
       common, document,
-      fmt::format("{} point{}{}, {} done, {:.3g} particle-steps left\n{}\n", counts.known,
+      fmt::format("{} point{}{}, {} done, {:.3g} particle-steps left{}\n{}\n", counts.known,
                   counts.known == 1 ? "" : "s",
                   plan.search ? fmt::format(" in the first round of {} search{}", schedule.curves().size(),
                                             schedule.curves().size() == 1 ? "" : "es")
                               : "",
-                  counts.done, counts.work_left, store.folder().string()));
+                  counts.done, counts.work_left,
+                  counts.most > counts.known
+                      ? fmt::format("; at most {} points, {:.3g} particle-steps in all rounds", counts.most,
+                                    counts.most_work)
+                      : "",
+                  store.folder().string()));
 }
 
 /// \param files that are certainly written
@@ -214,9 +221,11 @@ void run_run(const SweepOptions& options, const Common& common) {
     SweepWatch watch(common);
     if (job)
       run_on_ranks(schedule ? &*schedule : nullptr, plan, store, options.keep_trajectories, watch);
-    else
-      run_here({&*schedule}, store, {workers.count, options.keep_trajectories, profile.sum(), workers.solver},
-               watch);
+    else {
+      const sweep::FarmOptions farm{workers.count, options.keep_trajectories, profile.sum(), workers.solver};
+      announce({&*schedule}, farm, watch);
+      run_here({&*schedule}, store, farm, watch);
+    }
   }
   if (!schedule) return;
   nlohmann::json document = as_json(schedule->counts(), store.folder(), schedule->all());

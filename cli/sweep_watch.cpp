@@ -24,6 +24,19 @@ double SweepWatch::time_left() const {
   return seconds_ - std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
 }
 
+void SweepWatch::expect(const sweep::Counts& counts, double seconds) {
+  if (quiet_) return;
+  const char* at_most = counts.most > counts.known ? "at most " : "";
+  if (terminal_) std::fprintf(stderr, "\r\033[K");
+  std::fprintf(stderr, "%s\n",
+               fmt::format("{}{} open points, {:.3g} particle-steps: {}about {}{}", at_most,
+                           counts.most - counts.done, counts.most_work, at_most, time_text(seconds),
+                           seconds > time_left()
+                               ? fmt::format(", of which the time limit allows {}", time_text(time_left()))
+                               : "")
+                   .c_str());
+}
+
 void SweepWatch::look(const sweep::Counts& counts, double seconds_left) {
   try {
     signals_.update(0, 0);
@@ -32,9 +45,11 @@ void SweepWatch::look(const sweep::Counts& counts, double seconds_left) {
                       "Stopped by a signal; finished points are kept, and the same command continues.");
   }
   if (quiet_) return;
-  std::string line = fmt::format("{} of {} points done, {} running", counts.done, counts.known, counts.here);
+  const char* at_most = counts.most > counts.known ? "at most " : "";
+  std::string line =
+      fmt::format("{} of {}{} points done, {} running", counts.done, at_most, counts.most, counts.here);
   if (counts.failed > 0) line += fmt::format(", {} failed", counts.failed);
-  if (std::isfinite(seconds_left)) line += fmt::format(", about {} left", time_text(seconds_left));
+  if (std::isfinite(seconds_left)) line += fmt::format(", {}about {} left", at_most, time_text(seconds_left));
   if (line == last_) return;
   last_ = line;
   if (terminal_) {

@@ -57,7 +57,7 @@ class ProgressWatch : public sweep::Watch {
  public:
   explicit ProgressWatch(Progress& progress) : progress_(progress) {}
   void look(const sweep::Counts& counts, double) override {
-    progress_.update(static_cast<std::int64_t>(counts.done), static_cast<std::int64_t>(counts.known));
+    progress_.update(static_cast<std::int64_t>(counts.done), static_cast<std::int64_t>(counts.most));
   }
 
  private:

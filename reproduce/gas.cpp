@@ -224,6 +224,7 @@ bool Gas::run() {
   std::vector<sweep::Schedule*> schedules;
   for (Runs& runs : runs_)
     for (sweep::Schedule& schedule : runs.schedules) schedules.push_back(&schedule);
+  announce(schedules, request_.farm(), *request_.watch);
   const bool complete = run_here(schedules, store_, request_.farm(), *request_.watch);
   for (Runs& runs : runs_) read(runs);
   return complete;

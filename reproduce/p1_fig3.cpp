@@ -560,6 +560,13 @@ Runs simulated(const Request& request, const Size& size) {
       }
   std::optional<Crystals> crystals = crystals_of(size, request.seed);
   if (crystals) crystals->schedule.emplace(crystals->plan, store);
+  std::vector<sweep::Schedule*> all;
+  if (crystals) all.push_back(&*crystals->schedule);
+  for (Boundary& b : runs.boundaries) {
+    all.push_back(&*b.schedule);
+    if (b.grid_schedule) all.push_back(&*b.grid_schedule);
+  }
+  announce(all, request.farm(), *request.watch);
   // Run the height that most targets use first, so that a lack of time affects the least important runs.
   for (const bool first : {true, false}) {
     std::vector<sweep::Schedule*> schedules;

@@ -315,6 +315,7 @@ Values simulated_values(const Request& request, const Size& size, bool& complete
   for (const sweep::Plan& plan : plans) schedules.emplace_back(plan, store);
   std::vector<sweep::Schedule*> open;
   for (sweep::Schedule& s : schedules) open.push_back(&s);
+  announce(open, request.farm(), *request.watch);
   complete = run_here(open, store, request.farm(), *request.watch);
   Values values;
   for (std::size_t k = 0; k < schedules.size(); ++k) collect(kIntegrators[k], schedules[k], values);

@@ -266,7 +266,10 @@ StrengthSweeps strength_sweeps(const Request& request, const std::string& keys, 
                       of_crystal = plan_of(size, crystal, request.seed);
     sweep::Schedule r(of_random, store), c(of_crystal, store);
     // Once the time has run out, only results of earlier calls are read.
-    if (all.complete) all.complete = run_here({&r, &c}, store, request.farm(), *request.watch);
+    if (all.complete) {
+      announce({&r, &c}, request.farm(), *request.watch);
+      all.complete = run_here({&r, &c}, store, request.farm(), *request.watch);
+    }
     HeightSweeps height{.layers = layers,
                         .random = strength_sweep_of("random", r),
                         .crystal = strength_sweep_of("crystal_a", c)};

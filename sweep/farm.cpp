@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "sim/run/cost.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "sim/scene/resource_demand.hpp"
 #include "sim/scene/scene.hpp"
@@ -29,6 +30,21 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
+
+Counts counts_of(const std::vector<Schedule*>& schedules) {
+  Counts sum;
+  for (const Schedule* schedule : schedules) {
+    const Counts c = schedule->counts();
+    sum.known += c.known;
+    sum.done += c.done;
+    sum.here += c.here;
+    sum.failed += c.failed;
+    sum.work_left += c.work_left;
+    sum.most += c.most;
+    sum.most_work += c.most_work;
+  }
+  return sum;
+}
 
 /// Worker threads that take points from the schedules, and the calling thread that reports progress.
 class Farm {
@@ -66,21 +82,13 @@ class Farm {
     std::unique_lock lock(mutex_);
     while (working_ > 0 || started_ < options_.threads) {
       changed_.wait_for(lock, 200ms);
-      Counts sum;
-      for (const Schedule* schedule : schedules_) {
-        const Counts c = schedule->counts();
-        sum.known += c.known;
-        sum.done += c.done;
-        sum.here += c.here;
-        sum.failed += c.failed;
-        sum.work_left += c.work_left;
-      }
+      const Counts sum = counts_of(schedules_);
       // Once a point is done, so that every call makes progress, however short its time.
       if (!std::isnan(rate()) && watch_.time_left() < -overrun()) {
         late_ = true;  // before closing_, which ends the points
         closing_ = true;
       }
-      const double left = sum.work_left / (rate() * options_.threads);
+      const double left = sum.most_work / (rate() * options_.threads);
       lock.unlock();
       watch_.look(sum, left);
       lock.lock();
@@ -199,6 +207,17 @@ class Farm {
   std::exception_ptr error_;
 };
 
+/// Lets a watch end the measurement of the speed.
+class WatchedProgress : public Progress {
+ public:
+  WatchedProgress(Watch& watch, const Counts& counts) : watch_(watch), counts_(counts) {}
+  void update(std::int64_t, std::int64_t) override { watch_.look(counts_, kUnknown); }
+
+ private:
+  Watch& watch_;
+  const Counts& counts_;
+};
+
 /// Processor time of the results of schedules, s; NaN if one does not state it.
 double processor_seconds_of(const std::vector<Schedule*>& schedules) {
   double sum = 0;
@@ -256,6 +275,26 @@ void require_memory_together(const Schedule& schedule, int together, const std::
           "machine has {} available; with {} {} they fit.",
           scene.n_beads.value_or(0), open.size(), sim::bytes_text(sum), sim::bytes_text(available), way,
           fit));
+}
+
+void announce(const std::vector<Schedule*>& schedules, const FarmOptions& options, Watch& watch) {
+  constexpr double kLong = 1e10;     // particle-steps
+  constexpr double kMeasured = 0.1;  // s
+  const Counts counts = counts_of(schedules);
+  // The speed of a device is not measured here.
+  if (counts.most_work < kLong || options.solver != sim::SolverKind::best) return;
+  const Point* longest = nullptr;
+  const Plan* plan = nullptr;
+  for (const Schedule* schedule : schedules)
+    if (const Point* open = schedule->longest_open())
+      if (longest == nullptr || open->work > longest->work) longest = open, plan = &schedule->plan();
+  if (longest == nullptr) return;
+  WatchedProgress progress(watch, counts);
+  const sim::Cost cost = sim::measure_cost(
+      sim::read_scene_text(longest->scene, plan->scene_name, {}, plan->scene_folder), kMeasured, 1, progress);
+  if (!cost.stopped.empty() || cost.beads == 0) return;
+  watch.expect(
+      counts, counts.most_work * cost.seconds_per_step / (static_cast<double>(cost.beads) * options.threads));
 }
 
 bool run_here(const std::vector<Schedule*>& schedules, const Store& store, const FarmOptions& options,

@@ -16,8 +16,12 @@ namespace twincell::sweep {
 class Watch {
  public:
   virtual ~Watch() = default;
+  /// Receives what announce() expects, before the first point.
+  /// \param seconds at most, elapsed, on all threads
+  virtual void expect(const Counts& /*counts*/, double /*seconds*/) {}
   /// Receives the progress several times a second, in the calling thread. May throw Interrupted.
-  /// \param seconds_left estimate from the speed so far; NaN until the first point is done
+  /// \param seconds_left estimate from the speed so far, at most, as a search may end earlier; NaN until the
+  ///     first point is done
   virtual void look(const Counts& /*counts*/, double /*seconds_left*/) {}
   /// A remaining time of this length, s, or longer is no limit.
   static constexpr double kNoTimeLimit = 1e200;
@@ -46,6 +50,11 @@ struct FarmOptions {
 /// \throws ConfigError naming `way`, or the key of the number of beads if a single point needs too much
 void require_memory_together(const Schedule& schedule, int together, const std::string& way,
                              double available = memory_available());
+
+/// Tells the watch how much the open points of the schedules cost, if that is more than 10^10 particle-steps,
+/// some minutes of a core. The speed is that of the longest open point, measured here (sim/run/cost.hpp).
+/// \throws Interrupted
+void announce(const std::vector<Schedule*>& schedules, const FarmOptions& options, Watch& watch);
 
 /// Computes the points of the schedules until all are done or no remaining point fits into the time left.
 /// Once a point is done, those that exceed the time limit by more than 5 s and 5 % of the time are ended and

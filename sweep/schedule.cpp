@@ -173,18 +173,39 @@ bool Schedule::all() const {
 
 Counts Schedule::counts() const {
   Counts counts;
-  for (std::size_t c = 0; c < curves_.size(); ++c)
-    for (std::size_t i = 0; i < curves_[c].points.size(); ++i) {
+  double further = 0;
+  for (std::size_t c = 0; c < curves_.size(); ++c) {
+    const Curve& curve = curves_[c];
+    double work = 0;
+    for (std::size_t i = 0; i < curve.points.size(); ++i) {
       ++counts.known;
       counts.here += here_[c][i] != 0 ? 1 : 0;
-      if (curves_[c].results[i]) {
+      work += curve.points[i].work;
+      if (curve.results[i]) {
         ++counts.done;
-        counts.failed += curves_[c].failed[i] != 0 ? 1 : 0;
+        counts.failed += curve.failed[i] != 0 ? 1 : 0;
       } else {
-        counts.work_left += curves_[c].points[i].work;
+        counts.work_left += curve.points[i].work;
       }
     }
+    if (!plan_.search || curve.complete || curve.points.empty()) continue;
+    const auto known = static_cast<double>(curve.points.size());
+    const double more = std::max(0.0, plan_.search->runs - known);
+    counts.most += static_cast<std::size_t>(more);
+    further += more * work / known;
+  }
+  counts.most += counts.known;
+  counts.most_work = counts.work_left + further;
   return counts;
+}
+
+const Point* Schedule::longest_open() const {
+  const Point* longest = nullptr;
+  for (const Curve& curve : curves_)
+    for (std::size_t i = 0; i < curve.points.size(); ++i)
+      if (!curve.results[i] && (longest == nullptr || curve.points[i].work > longest->work))
+        longest = &curve.points[i];
+  return longest;
 }
 
 }  // namespace twincell::sweep

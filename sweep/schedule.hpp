@@ -34,6 +34,9 @@ struct Counts {
   std::size_t here = 0;    ///< being computed by this process
   std::size_t failed = 0;  ///< done, but the run failed
   double work_left = 0;    ///< particle-steps of the known points that are not done
+  std::size_t most = 0;    ///< largest number of points, with all runs that searches may still need
+  double most_work =
+      0;  ///< particle-steps of those that are not done; further runs count as the mean of the known
 };
 
 /// Points at one set of axis values: part of a grid, or one search.
@@ -66,6 +69,8 @@ class Schedule {
   /// Whether every point is done.
   [[nodiscard]] bool all() const;
   [[nodiscard]] Counts counts() const;
+  /// The open point with the largest work; null: none is open.
+  [[nodiscard]] const Point* longest_open() const;
   [[nodiscard]] const std::vector<Curve>& curves() const { return curves_; }
   /// Number of runs of a grid that are left out because they would repeat another run bit for bit: nothing in
   /// their scene depends on the seed. A search moves such a run to another position instead.
