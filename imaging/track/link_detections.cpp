@@ -174,6 +174,10 @@ std::string LinkedDetections::empty_frames() const {
       empty == 1 ? "frame " : "frames ", named, empty > kMaxNamed ? ", ..." : "");
 }
 
+std::string LinkedDetections::camera_moved() const {
+  return in_words(camera_jumps, frames.size());
+}
+
 std::string LinkedDetections::surplus_tracks() const {
   constexpr double kMaxTracksPerBead = 1.2;
   const std::size_t most = fewest_and_most(frames).second;
@@ -296,18 +300,39 @@ void link_frames(const DetectionStore& located, LinkOptions link, const CellDesc
   stack.links = linker.total();
 }
 
+/// The jumps of a bumped camera.
+std::vector<CameraJump> camera_jumps_of(const DetectionStore& located, const LinkOptions& link,
+                                        std::span<const double> plate_px, int frames_per_cycle) {
+  std::vector<std::vector<double>> x_px(located.size());
+  for (std::size_t f = 0; f < located.size(); ++f)
+    for (const TrackedBead& b : located[f]) x_px[f].push_back(b.x_px);
+  return merged(jumps_of_beads(x_px, link.diameter_px), jump_of_plate(plate_px, frames_per_cycle));
+}
+
+/// The evidence of a camera that was not bumped: the phases are those of the plate without its jumps.
+LockEvidence without_jumps(LockEvidence evidence, std::span<const CameraJump> jumps) {
+  for (const CameraJump& j : jumps)
+    for (std::size_t f = j.frame; f < evidence.plate_px.size(); ++f)
+      evidence.plate_px[f] += j.down_px.value_or(0);
+  return evidence;
+}
+
 }  // namespace
 
 LinkedDetections link_detections(const DetectionStore& located, LinkOptions link, const CellDescription& cell,
                                  const PhaseSource& source, const std::filesystem::path& folder,
-                                 Progress& progress, const LockEvidence& evidence) {
+                                 Progress& progress, const LockEvidence& seen) {
+  const std::vector<CameraJump> jumps =
+      camera_jumps_of(located, link, seen.plate_px, cell.phase_lock.frames_per_cycle);
+  const LockEvidence evidence = without_jumps(seen, jumps);
   // Where the film itself gives the phases, repeated frames would spoil them.
   const bool of_film = source.method == PhaseMethod::found ||
                        (source.method == PhaseMethod::fixed && cell.phase_lock.locked() && !source.trusted);
   const std::span<const std::uint8_t> repeats =
       of_film ? std::span<const std::uint8_t>(evidence.repeats) : std::span<const std::uint8_t>();
   const auto linked = [&](PhaseTable phases, MotionOfBed* motion) {
-    LinkedDetections stack{.frames = DetectionStore(folder), .tracks = {}, .phases = {}, .links = {}};
+    LinkedDetections stack{
+        .frames = DetectionStore(folder), .tracks = {}, .phases = {}, .links = {}, .camera_jumps = jumps};
     stack.phases = std::move(phases);
     link_frames(located, link, cell, repeats, stack, motion, progress);
     return stack;

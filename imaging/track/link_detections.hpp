@@ -12,6 +12,7 @@
 #include "core/progress.hpp"
 #include "imaging/cell/cell.hpp"
 #include "imaging/link/link.hpp"
+#include "imaging/phase/camera_jump.hpp"
 #include "imaging/phase/lock_check.hpp"
 #include "imaging/phase/phase_lock.hpp"
 #include "imaging/track/detection_store.hpp"
@@ -50,6 +51,7 @@ struct LinkedDetections {
   std::int64_t n_tracks = 0;
   PhaseTable phases;
   LinkReport links;
+  std::vector<CameraJump> camera_jumps;  ///< of a bumped camera or cell
 
   /// Tracks of tracers (by majority of frames) that do not span the first frame to the last: the tracer's
   /// identity was lost, or the tracer entered or left.
@@ -60,6 +62,9 @@ struct LinkedDetections {
   /// A sentence, without a full stop, that names frames without beads in a film with beads, as black frames
   /// are. Empty if there are none.
   [[nodiscard]] std::string empty_frames() const;
+  /// A sentence, without a full stop, that names the frames from which all is shifted. Empty if there are
+  /// none.
+  [[nodiscard]] std::string camera_moved() const;
   /// A sentence, without a full stop, if there are more than 1.2 times as many tracks as beads in any frame.
   /// Empty otherwise.
   [[nodiscard]] std::string surplus_tracks() const;

@@ -180,8 +180,8 @@ std::vector<std::string> TrackedStack::doubts(const CellDescription& cell) const
   std::vector<std::string> all;
   for (const std::string& doubt : settings_doubts) all.push_back(doubt + ".");
   for (const std::string& doubt :
-       {phases.warning, missing_beads(), empty_frames(), paler_doubt(), rejected_doubt(), surplus_tracks(),
-        scale_doubt(cell), aspect_doubt(), still_discs()})
+       {phases.warning, camera_moved(), missing_beads(), empty_frames(), paler_doubt(), rejected_doubt(),
+        surplus_tracks(), scale_doubt(cell), aspect_doubt(), still_discs()})
     if (!doubt.empty()) all.push_back(doubt + ".");
   return all;
 }
