@@ -20,6 +20,7 @@
 #include "imaging/settings/find_contrast.hpp"
 #include "imaging/settings/hypothesis_test.hpp"
 #include "imaging/settings/larger_discs.hpp"
+#include "imaging/settings/paired_spots.hpp"
 #include "imaging/settings/polydisperse_settings.hpp"
 #include "imaging/settings/profile_model_selection.hpp"
 #include "imaging/settings/settings_choice.hpp"
@@ -491,6 +492,22 @@ class SettingsSearch {
     return wider.empty() ? choice : with(choice, wider);
   }
 
+  /// The choice, or that of the beads if the chosen discs are two highlights on each of them. Nothing else
+  /// shows pairs in one direction, so the beads need no more evidence than their highlights have; the two
+  /// spots are also why their rims may not seem round.
+  [[nodiscard]] SettingsChoice with_beads_of_pairs(SettingsChoice choice) const {
+    if (choice.tried.empty() || !choice.tried.front().settings.other_diameters_px.empty()) return choice;
+    const FoundSettings spots = choice.tried.front().settings;
+    choice.pairs = spot_pairs(locate(grey_, completed(spots, given_)).beads);
+    if (!choice.pairs) return choice;
+    if (auto beads = beads_of(*choice.pairs, spots)) {
+      choice.tried.front().not_chosen = "its discs are in pairs, as two highlights of each bead";
+      choice.tried.insert(choice.tried.begin(), std::move(*beads));
+      choice.beads_of_pairs = true;
+    }
+    return choice;
+  }
+
   /// The choice with the sizes of large discs that are too few for the search, such as a single intruder, if
   /// the picture around them confirms them. Those that it does not confirm are noted.
   [[nodiscard]] SettingsChoice with_larger_discs(SettingsChoice choice) const {
@@ -521,6 +538,33 @@ class SettingsSearch {
   }
 
  private:
+  /// Settings whose discs, wider than the spots, are between the two of a pair each, with the largest
+  /// evidence; nothing if there are none.
+  [[nodiscard]] std::optional<TriedSettings> beads_of(const SpotPairs& pairs,
+                                                      const FoundSettings& spots) const {
+    constexpr double kRatio = 1.12, kOther = 0.1;
+    std::vector<FoundSettings> wider;
+    const double apart = std::hypot(pairs.dx_px, pairs.dy_px);
+    const double narrowest = std::max(apart, spots.diameter_px);
+    const SpotPairs in_frame = spot_pairs(locate(frame_, completed(spots, given_)).beads).value_or(pairs);
+    for (double d = pairs.touching_px; d > narrowest; d /= kRatio)
+      wider.push_back({d, spots.bright, 0, {}, std::string(kProfileRefiner.word)});
+    const auto has_one_each = [&](const TriedSettings& t) {
+      return t.evidence > 0 &&
+             std::abs(static_cast<double>(t.beads) / static_cast<double>(pairs.middles.size()) - 1) < kOther;
+    };
+    std::vector<TriedSettings> tried = try_settings(region_, given_, wider, threads_);
+    std::stable_sort(tried.begin(), tried.end(),
+                     [](const auto& a, const auto& b) { return a.evidence > b.evidence; });
+    for (const TriedSettings& t : tried) {
+      if (!has_one_each(t)) continue;
+      TriedSettings beads = tried_in_full(region_, given_, t.settings);
+      if (has_one_each(beads) && are_between(locate(frame_, completed(t.settings, given_)).beads, in_frame))
+        return beads;
+    }
+    return std::nullopt;
+  }
+
   /// Settings with the size of a larger disc in addition; nothing if the picture around it does not gain what
   /// a bead does, or if discs of one size alone can be fitted.
   [[nodiscard]] std::optional<TriedSettings> with_size_of(const LargerDisc& disc,
@@ -642,7 +686,7 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   choice = search.or_small_discs(std::move(choice));
   if (choice.tried.empty()) return choice;
   choice = search.with_wider_profiles(search.with_variants_of_winner(choice));
-  choice = search.with_larger_discs(std::move(choice));
+  choice = search.with_larger_discs(search.with_beads_of_pairs(std::move(choice)));
   for (LargerDisc& d : choice.larger) {
     Detection place;
     place.x = d.x, place.y = d.y;

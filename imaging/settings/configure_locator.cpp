@@ -34,6 +34,13 @@ std::vector<double> radii_of(const std::vector<Detection>& beads) {
   return radii;
 }
 
+/// The settings with a size that is known, unless they then locate fewer discs.
+LocatorOptions at_known_size(const cv::Mat& frame, LocatorOptions settled) {
+  LocatorOptions known = settled;
+  known.size_known = true;
+  return locate(frame, known).beads.size() >= locate(frame, settled).beads.size() ? known : settled;
+}
+
 /// The settings with the diameter of the rims, unless they then locate fewer discs. A profile describes discs
 /// of another diameter as well, so that the evidence hardly determines it.
 LocatorOptions at_rim(const cv::Mat& frame, LocatorOptions settled, const std::vector<Detection>& beads) {
@@ -176,13 +183,15 @@ LocatorOptions settled_on(const cv::Mat& frame, const SettingsChoice& choice, co
 /// The settings, adapted to the beads that they locate in the frame on which they were chosen.
 LocatorConfiguration adapted(const cv::Mat& frame, ChoiceOnFrame chosen, const LocatorOptions& given) {
   LocatorOptions settled = settled_on(frame, chosen.choice, given);
-  if (given.diameter_px <= 0 && model_of(settled.refine) == DiscModel::shared_profile) {
+  if (chosen.choice.beads_of_pairs) {
+    settled = at_known_size(frame, std::move(settled));  // the steepest rims are those of the highlights
+  } else if (given.diameter_px <= 0 && model_of(settled.refine) == DiscModel::shared_profile) {
     const std::vector<Detection> beads = locate(frame, settled).beads;
     settled = at_rim(frame, std::move(settled), beads);
   }
   settled = with_spread_of_sizes(frame, with_pale_discs(frame, settled));
   const std::vector<Detection> beads = locate(frame, settled).beads;
-  chosen.choice.apart_px = distance_of_parts(beads, settled);
+  if (!chosen.choice.pairs) chosen.choice.apart_px = distance_of_parts(beads, settled);
   if (given.diameter_px <= 0) chosen.choice.spots_px = width_of_spots(beads, settled);
   return {settled, static_cast<std::int64_t>(chosen.number), std::move(chosen.choice)};
 }

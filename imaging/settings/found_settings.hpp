@@ -3,6 +3,7 @@
 /// Locator settings found from a frame.
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,16 @@ struct TriedSettings {
   bool preferred = false;  ///< the chosen ones needed clearly more evidence than these, and had it
 };
 
+/// What discs have in common if they come in pairs.
+struct SpotPairs {
+  double dx_px = 0, dy_px = 0;  ///< from the left disc of a pair to the right one
+  double touching_px = 0;       ///< distance of neighbouring pairs: the width of beads that touch
+  struct Middle {
+    double x = 0, y = 0;  ///< px
+  };
+  std::vector<Middle> middles;  ///< of the pairs
+};
+
 /// A round region of a picture that is larger than the beads.
 struct LargerDisc {
   double x = 0, y = 0;     ///< px
@@ -52,6 +63,11 @@ struct SettingsChoice {
   /// The smallest distance of two of the chosen discs, px, if it is that of larger beads that touch, of which
   /// the discs may be the highlights. 0: it is not.
   double apart_px = 0;
+  /// The two highlights of each bead, if the discs with most evidence come in pairs (paired_spots.hpp).
+  std::optional<SpotPairs> pairs;
+  /// The chosen ones are the beads of the pairs, and the second ones their highlights; otherwise the chosen
+  /// ones are the highlights, for no discs were found that have one pair each.
+  bool beads_of_pairs = false;
   /// Width of the chosen discs, px, if it is that of the highlights of larger beads or of gaps. 0: it is not.
   double spots_px = 0;
   /// Round regions that are larger than the beads and that no bead explains (larger_discs.hpp).

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "imaging/settings/settings_choice.hpp"
 
@@ -20,6 +21,22 @@ std::string regions_text(const std::vector<LargerDisc>& discs) {
   return discs.size() > kMost ? text + fmt::format(" and {} more", discs.size() - kMost) : text;
 }
 
+/// What spots that come in pairs are taken for.
+std::string pairs_text(const SettingsChoice& choice, const std::string& refine) {
+  const double apart = std::hypot(choice.pairs->dx_px, choice.pairs->dy_px);
+  return choice.beads_of_pairs
+             ? fmt::format(
+                   "spots that come in pairs, {:.1f} px apart in one direction, are taken for two highlights "
+                   "of each bead, as of two lamps; if each spot is a bead, locate them with {}",
+                   apart, options_text(choice.tried[1].settings, refine))
+             : fmt::format(
+                   "the discs come in pairs, {:.1f} px apart in one direction, as two highlights of each "
+                   "bead do: then each bead, {:.1f} px wide if they touch, is located twice; use one lamp, "
+                   "or compare the overlay of twincell locate --overlay with that of --diameter {:.1f} "
+                   "--refine profile",
+                   apart, choice.pairs->touching_px, choice.pairs->touching_px);
+}
+
 }  // namespace
 
 std::string options_text(const FoundSettings& settings, const std::string& refine) {
@@ -32,7 +49,7 @@ std::string options_text(const FoundSettings& settings, const std::string& refin
 
 std::vector<std::string> settings_doubts(const SettingsChoice& choice, const std::string& refine) {
   std::vector<std::string> doubts;
-  if (const std::size_t k = narrow_runner_up(choice); k > 0)
+  if (const std::size_t k = narrow_runner_up(choice); k > 0 && !choice.pairs)
     doubts.push_back(
         fmt::format("other settings explain the picture nearly as well; compare the overlays of twincell "
                     "locate --overlay without options and with {}",
@@ -43,6 +60,7 @@ std::vector<std::string> settings_doubts(const SettingsChoice& choice, const std
         "beads found cover little of it: compare the overlay of twincell locate --overlay with and without "
         "--diameter {0:.1f} --dark or --bright",
         choice.uncovered_lattice_px));
+  if (choice.pairs) doubts.push_back(pairs_text(choice, refine));
   if (choice.apart_px > 0)
     doubts.push_back(fmt::format(
         "no two of the discs, which are {:.1f} px wide, are closer than {:.1f} px: they may be the "
