@@ -19,7 +19,7 @@
 #include "imaging/stack/different_stacks.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "twin/cell_names.hpp"
-#include "twin/strengths.hpp"
+#include "twin/stated_strengths.hpp"
 #include "twin/twin.hpp"
 
 namespace twincell::cli {

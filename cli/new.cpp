@@ -24,7 +24,7 @@
 #include "twin/cell_draft.hpp"
 #include "twin/cell_names.hpp"
 #include "twin/cell_picture.hpp"
-#include "twin/strengths.hpp"
+#include "twin/stated_strengths.hpp"
 
 namespace twincell::cli {
 namespace {

@@ -17,7 +17,7 @@
 #include <utility>
 
 #include "analysis/neighbours/bond_orientation.hpp"
-#include "analysis/order/orientation.hpp"
+#include "analysis/order/lattice_orientation.hpp"
 #include "analysis/runs/bed_keys.hpp"
 #include "analysis/runs/phase_diagram.hpp"
 #include "analysis/statistics/statistics.hpp"

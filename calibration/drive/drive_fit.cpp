@@ -16,8 +16,8 @@
 #include "core/constants.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
-#include "imaging/phase/lost_frame_costs.hpp"
-#include "imaging/phase/sine_slips.hpp"
+#include "imaging/phase/dropped_frame_costs.hpp"
+#include "imaging/phase/dropped_frames.hpp"
 #include "imaging/stack/repeated_frames.hpp"
 
 namespace twincell::calibration {

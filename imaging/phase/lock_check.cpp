@@ -10,7 +10,7 @@
 #include "core/constants.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
-#include "imaging/phase/lost_frame_costs.hpp"
+#include "imaging/phase/dropped_frame_costs.hpp"
 #include "imaging/phase/plate_phases.hpp"
 
 namespace twincell::imaging {

@@ -21,7 +21,7 @@ struct LockEvidence {
   std::vector<double> plate_px;  ///< [frames] height of the plate, NaN where not seen (plate_row.hpp)
   std::vector<double> times_s;   ///< [frames] time stamps of the camera
   /// [frames] as RepeatedFrames::repeats, empty if no frame is repeated. The checks here take evidence
-  /// without repeated frames (repeated_instants.hpp).
+  /// without repeated frames (phases_of_repeated_frames.hpp).
   std::vector<std::uint8_t> repeats;
 };
 

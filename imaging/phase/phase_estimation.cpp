@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "core/median.hpp"
-#include "imaging/phase/lost_frame_costs.hpp"
+#include "imaging/phase/dropped_frame_costs.hpp"
 
 namespace twincell::imaging {
 

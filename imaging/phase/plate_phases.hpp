@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "imaging/phase/dropped_frames.hpp"
 #include "imaging/phase/out_of_lock.hpp"
 #include "imaging/phase/phase_lock.hpp"
-#include "imaging/phase/sine_slips.hpp"
 
 namespace twincell::imaging {
 

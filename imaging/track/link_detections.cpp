@@ -14,8 +14,8 @@
 #include "core/median.hpp"
 #include "imaging/link/initial_velocities.hpp"
 #include "imaging/phase/phase_estimation.hpp"
+#include "imaging/phase/phases_of_repeated_frames.hpp"
 #include "imaging/phase/plate_phases.hpp"
-#include "imaging/phase/repeated_instants.hpp"
 #include "imaging/phase/trigger_list.hpp"
 #include "imaging/stack/repeated_frames.hpp"
 

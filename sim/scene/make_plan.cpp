@@ -6,8 +6,8 @@
 #include "sim/laws/law_words.hpp"
 #include "sim/scene/drive_tables.hpp"
 #include "sim/scene/plan_effects.hpp"
-#include "sim/scene/plan_limits.hpp"
 #include "sim/scene/plan_stepping.hpp"
+#include "sim/scene/plan_time_step.hpp"
 #include "sim/scene/plan_warnings.hpp"
 #include "sim/scene/recorded_drive.hpp"
 
@@ -70,7 +70,7 @@ Plan make_plan(const Scene& s, const std::vector<Bead>& beads) {
   plan.walls = s.walls();
   set_laws(s, plan);
   refuse_effects(s, plan);
-  limit_step(s, beads, plan);
+  set_time_step(s, beads, plan);
   set_cycles(s, plan);
   plan.effects = list_effects(s, plan);
   choose_stepping(s, beads.empty() ? s.n_beads.value_or(0) : beads.size(), plan);

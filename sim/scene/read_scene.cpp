@@ -25,23 +25,23 @@ Scene interpret(Config& config, const std::string& name, const std::filesystem::
   Scene scene;
   scene.file = name;
   std::erase(lower, name);  // a scene with such a name is the user's own file
-  Voids voids(config, std::move(lower), scene.void_keys);
+  VoidKeys void_keys(config, std::move(lower), scene.void_keys);
   // Reading: in this order, since later tables depend on the dimension, the cell and the start.
   const ConfigSection root = config.root(), cell = root.section("cell"), beads = root.section("beads"),
                       contact = root.section("contact"), drive = root.section("drive");
   scene.source = root;
   static_cast<void>(root.text("preset"));
-  const double g = read_cell(cell, scene, voids);
-  read_beads(beads, scene, voids);
-  read_contact(contact, scene, voids);
+  const double g = read_cell(cell, scene, void_keys);
+  read_beads(beads, scene, void_keys);
+  read_contact(contact, scene, void_keys);
   const DriveSpec spec = read_drive(drive, folder, scene);
   const std::optional<RampSpec> ramp = read_ramp(drive);
-  read_start(root.section("start"), folder, scene, voids);
+  read_start(root.section("start"), folder, scene, void_keys);
   read_time(root.section("time"), scene);
   read_until(root.section("until"), scene);
   read_scale(root.section("scale"), scene);
   read_effects(root.section("effects"), scene);
-  refuse_void_spread(beads, scene, voids);
+  refuse_void_spread(beads, scene, void_keys);
   // Unknown keys come first: a misspelt key is often the reason why another one is missing.
   config.refuse_unknown_keys();
   const ContactChoice& laws = scene.contact;

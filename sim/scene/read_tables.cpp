@@ -49,13 +49,14 @@ bool read_motion(const Section& s, const std::string& key, bool otherwise) {
 }
 
 /// Reads gravity and returns the magnitude of g as given, to which Gamma and K_m refer.
-double read_gravity(const Section& s, Scene& scene, Voids& voids) {
+double read_gravity(const Section& s, Scene& scene, VoidKeys& void_keys) {
   const auto tilt = s.number_in("tilt", -45, 45);
   record_key(s.where("gravity").key, {.lengths = {2, 3}});
   if (!s.is_list("gravity")) {
     const double g = s.number_in("gravity", 0).value_or(1), lean = tilt.value_or(0) * std::numbers::pi / 180;
     scene.gravity = Vec3(g * std::sin(lean), 0, -g * std::cos(lean));
-    if (g == 0 && tilt.value_or(0) != 0) voids.refuse(s, {"tilt"}, "turns gravity, but cell.gravity is 0.");
+    if (g == 0 && tilt.value_or(0) != 0)
+      void_keys.refuse(s, {"tilt"}, "turns gravity, but cell.gravity is 0.");
     return g;
   }
   if (tilt)
@@ -84,7 +85,7 @@ void read_side_tilt(const Section& s, Scene& scene) {
 
 }  // namespace
 
-double read_cell(const Section& s, Scene& scene, Voids& voids) {
+double read_cell(const Section& s, Scene& scene, VoidKeys& void_keys) {
   scene.dimension = static_cast<int>(s.integer_in("dimension", 2, 3).value_or(scene.dimension));
   scene.width = s.number_in("width", 0, 1e6, true).value_or(scene.width);
   scene.height = s.number_in("height", 0, 1e9, true);
@@ -92,11 +93,12 @@ double read_cell(const Section& s, Scene& scene, Voids& voids) {
   scene.bottom = read_word(s, "bottom", {"wall", "periodic", "absent"}, scene.bottom);
   scene.lid = read_word(s, "lid", {"absent", "wall"}, scene.lid ? 1 : 0) == 1;
   if (scene.dimension == 2) {
-    voids.refuse(s, {"depth", "plates", "plates_motion"}, "a 2D cell has no depth; set cell.dimension = 3.");
+    void_keys.refuse(s, {"depth", "plates", "plates_motion"},
+                     "a 2D cell has no depth; set cell.dimension = 3.");
     scene.plate_drag = s.number_in("plate_drag", 0).value_or(scene.plate_drag);
   } else {
-    voids.refuse(s, {"plate_drag"},
-                 "stands in for the front and back plates of a 2D cell; in 3D use cell.plates.");
+    void_keys.refuse(s, {"plate_drag"},
+                     "stands in for the front and back plates of a 2D cell; in 3D use cell.plates.");
     const auto depth = s.number_in("depth", 0, 1e6, true);
     if (!depth) throw ConfigError(s.where("depth"), "a 3D cell needs its depth.");
     scene.depth = *depth;
@@ -107,16 +109,18 @@ double read_cell(const Section& s, Scene& scene, Voids& voids) {
   scene.plates_move = read_motion(s, "plates_motion", scene.plates_move);
   scene.lid_moves = read_motion(s, "lid_motion", scene.lid_moves);
   read_side_tilt(s, scene);
-  if (scene.bottom != Edge::wall) voids.refuse(s, {"bottom_motion"}, "the cell has no bottom wall.");
-  if (scene.sides != Edge::wall) voids.refuse(s, {"side_walls", "side_tilt"}, "the cell has no side walls.");
-  if (scene.plates != Edge::wall) voids.refuse(s, {"plates_motion"}, "the cell has no front and back walls.");
-  if (!scene.lid) voids.refuse(s, {"lid_motion"}, "the cell has no lid; set cell.lid = \"wall\".");
-  return read_gravity(s, scene, voids);
+  if (scene.bottom != Edge::wall) void_keys.refuse(s, {"bottom_motion"}, "the cell has no bottom wall.");
+  if (scene.sides != Edge::wall)
+    void_keys.refuse(s, {"side_walls", "side_tilt"}, "the cell has no side walls.");
+  if (scene.plates != Edge::wall)
+    void_keys.refuse(s, {"plates_motion"}, "the cell has no front and back walls.");
+  if (!scene.lid) void_keys.refuse(s, {"lid_motion"}, "the cell has no lid; set cell.lid = \"wall\".");
+  return read_gravity(s, scene, void_keys);
 }
 
 namespace {
 
-void read_intruder(const Section& s, Scene& scene, Voids& voids) {
+void read_intruder(const Section& s, Scene& scene, VoidKeys& void_keys) {
   if (!s.has("radius") && !s.has("mass") && !s.has("x") && !s.has("y") && !s.has("z")) return;
   Intruder intruder;
   const auto radius = s.number_in("radius", 0, 1e6, true), z = s.number("z");
@@ -125,7 +129,7 @@ void read_intruder(const Section& s, Scene& scene, Voids& voids) {
   intruder.radius = *radius;
   intruder.mass = s.number_in("mass", 0, 1e12, true).value_or(scene.mass_of(intruder.radius));
   intruder.x = s.number("x").value_or(scene.width / 2);
-  if (scene.dimension == 2) voids.refuse(s, {"y"}, "a 2D cell has no y.");
+  if (scene.dimension == 2) void_keys.refuse(s, {"y"}, "a 2D cell has no y.");
   intruder.y = scene.dimension == 3 ? s.number("y").value_or(scene.depth / 2) : 0;
   intruder.z = *z;
   scene.intruder = intruder;
@@ -133,7 +137,7 @@ void read_intruder(const Section& s, Scene& scene, Voids& voids) {
 
 }  // namespace
 
-void read_beads(const Section& s, Scene& scene, Voids& voids) {
+void read_beads(const Section& s, Scene& scene, VoidKeys& void_keys) {
   constexpr std::int64_t kMaxBeads = 10'000'000;
   scene.radius = s.number_in("radius", 0, 1e6, true).value_or(scene.radius);
   scene.mass = s.number_in("mass", 0, 1e12, true).value_or(scene.mass);
@@ -162,11 +166,12 @@ void read_beads(const Section& s, Scene& scene, Voids& voids) {
     throw ConfigError(s.where("spread_width"),
                       fmt::format("{} is out of range; the value must be less than 0.5.", *width));
   if (scene.spread == SizeSpread::none)
-    voids.refuse(s, {"spread_width"}, "is the width of a size distribution, but beads.spread is \"none\".");
+    void_keys.refuse(s, {"spread_width"},
+                     "is the width of a size distribution, but beads.spread is \"none\".");
   else if (!width)
     throw ConfigError(s.where("spread"), "needs beads.spread_width.");
   scene.spread_width = width.value_or(0);
-  read_intruder(s.section("intruder"), scene, voids);
+  read_intruder(s.section("intruder"), scene, void_keys);
 }
 
 namespace {
@@ -183,7 +188,7 @@ void refuse_former_key(const Section& s, const std::string& key, const std::stri
 }
 
 /// Refuses law keys that the chosen laws do not read, because their values would be ignored.
-void refuse_unread(const Section& table, const ContactChoice& laws, Voids& voids) {
+void refuse_unread(const Section& table, const ContactChoice& laws, VoidKeys& void_keys) {
   const std::vector<std::string> read = keys_of(laws.normal, laws.tangential, laws.rolling);
   for (const std::string& key : all_law_keys()) {
     if (!table.has(key) || std::find(read.begin(), read.end(), key) != read.end()) continue;
@@ -193,14 +198,14 @@ void refuse_unread(const Section& table, const ContactChoice& laws, Voids& voids
                                                             : laws.rolling;
     // Smooth beads may be given as tangential = "none", as mu = 0, or as both.
     if (key == "mu" && law == NoTangential::kWord && table.number(key) == 0.0) continue;
-    voids.refuse(table, {key},
-                 fmt::format("the law contact.{} = \"{}\" does not read it; {} would.", readers.axis, law,
-                             any_of_words(readers.laws)));
+    void_keys.refuse(table, {key},
+                     fmt::format("the law contact.{} = \"{}\" does not read it; {} would.", readers.axis, law,
+                                 any_of_words(readers.laws)));
   }
 }
 
 /// Refuses keys of [contact.wall] that the own tables of all walls of the cell state.
-void refuse_replaced(const Section& contact, const Section& walls, const Scene& scene, Voids& voids) {
+void refuse_replaced(const Section& contact, const Section& walls, const Scene& scene, VoidKeys& void_keys) {
   std::vector<std::string> own;
   for (const auto& [table, names] : wall_tables())
     if (std::ranges::any_of(scene.walls(), [&](const Wall& w) { return w.name == names.front(); }))
@@ -209,14 +214,14 @@ void refuse_replaced(const Section& contact, const Section& walls, const Scene& 
   for (const std::string& key : all_law_keys())
     if (walls.has(key) &&
         std::ranges::all_of(own, [&](const std::string& table) { return contact.section(table).has(key); }))
-      voids.refuse(walls, {key},
-                   fmt::format("all walls of the cell have their own: [contact.{}].",
-                               fmt::join(own, "] and [contact.")));
+      void_keys.refuse(walls, {key},
+                       fmt::format("all walls of the cell have their own: [contact.{}].",
+                                   fmt::join(own, "] and [contact.")));
 }
 
 }  // namespace
 
-void read_contact(const Section& s, Scene& scene, Voids& voids) {
+void read_contact(const Section& s, Scene& scene, VoidKeys& void_keys) {
   ContactChoice& c = scene.contact;
   refuse_former_word(s, "normal", "linear-clipped", "linear-no-tension");
   refuse_former_word(s, "normal", "falling-restitution", "velocity-dependent-restitution");
@@ -230,14 +235,14 @@ void read_contact(const Section& s, Scene& scene, Voids& voids) {
 
   const Section walls = s.section("wall");
   const auto only_numbers = [&](const Section& table) {
-    voids.refuse(
+    void_keys.refuse(
         table, {"normal", "tangential", "rolling"},
         "all contacts follow the same kinds of law, named in [contact]; their parameters may differ here "
         "(mu = 0 makes a smooth wall).");
   };
   only_numbers(walls);
   if (c.tangential == NoTangential::kWord && c.rolling != NoRolling::kWord) {
-    voids.refuse(
+    void_keys.refuse(
         s, {"rolling"},
         fmt::format("is \"{}\", but contact.tangential is \"{}\": without friction beads do not turn, "
                     "and nothing resists their rolling; choose a tangential law, or rolling = \"{}\".",
@@ -245,15 +250,15 @@ void read_contact(const Section& s, Scene& scene, Voids& voids) {
     c.rolling = NoRolling::kWord;
   }
   c.bead = ContactTable({s});
-  refuse_unread(s, c, voids);
-  refuse_unread(walls, c, voids);
+  refuse_unread(s, c, void_keys);
+  refuse_unread(walls, c, void_keys);
   for (const auto& [table, names] : wall_tables()) {
     const Section own = s.section(table);
     only_numbers(own);
-    refuse_unread(own, c, voids);
+    refuse_unread(own, c, void_keys);
     for (const auto& name : names) c.wall[name] = ContactTable({own, walls, s});
   }
-  refuse_replaced(s, walls, scene, voids);
+  refuse_replaced(s, walls, scene, void_keys);
 }
 
 namespace {
@@ -324,7 +329,7 @@ DriveSpec read_drive(const Section& s, const std::filesystem::path& folder, Scen
   return spec;
 }
 
-void read_start(const Section& s, const std::filesystem::path& folder, Scene& scene, Voids& voids) {
+void read_start(const Section& s, const std::filesystem::path& folder, Scene& scene, VoidKeys& void_keys) {
   if (const auto kind = s.word("kind", words_of(kStarts)))
     scene.start = row_named(kStarts, *kind, "start.kind", "start").value;
   const StartRow& row = start_row(scene.start);
@@ -349,34 +354,36 @@ void read_start(const Section& s, const std::filesystem::path& folder, Scene& sc
     return any_of_words(words);
   };
   if (!row.from_file) {
-    voids.refuse(s, {"from"},
-                 fmt::format("a file is named, but start.kind is not {}.", only_for(&StartRow::from_file)));
-    voids.refuse(s, {"in_motion"},
-                 fmt::format("keeps the motion of a file's beads, but start.kind is not {}.",
-                             only_for(&StartRow::from_file)));
+    void_keys.refuse(
+        s, {"from"},
+        fmt::format("a file is named, but start.kind is not {}.", only_for(&StartRow::from_file)));
+    void_keys.refuse(s, {"in_motion"},
+                     fmt::format("keeps the motion of a file's beads, but start.kind is not {}.",
+                                 only_for(&StartRow::from_file)));
   }
   if (scene.in_motion) {
-    voids.refuse(s, {"rest_energy", "settle_limit"},
-                 "applies to a bed that settles, but start.in_motion keeps it moving.");
-    voids.refuse(s, {"relax"}, "moves beads, but start.in_motion continues from their positions.");
+    void_keys.refuse(s, {"rest_energy", "settle_limit"},
+                     "applies to a bed that settles, but start.in_motion keeps it moving.");
+    void_keys.refuse(s, {"relax"}, "moves beads, but start.in_motion continues from their positions.");
   }
   if (!row.has_frames)
-    voids.refuse(s, {"frame"},
-                 fmt::format("a frame is named, but start.kind is not {}.", only_for(&StartRow::has_frames)));
+    void_keys.refuse(
+        s, {"frame"},
+        fmt::format("a frame is named, but start.kind is not {}.", only_for(&StartRow::has_frames)));
   if (!row.draws) {
-    voids.refuse(s, {"velocity_scale"},
-                 fmt::format("sets the speeds of a random start, but start.kind is not {}.",
-                             only_for(&StartRow::draws)));
-    voids.refuse(s, {"fraction"},
-                 fmt::format("sets the column of a random start, but start.kind is not {}.",
-                             only_for(&StartRow::draws)));
+    void_keys.refuse(s, {"velocity_scale"},
+                     fmt::format("sets the speeds of a random start, but start.kind is not {}.",
+                                 only_for(&StartRow::draws)));
+    void_keys.refuse(s, {"fraction"},
+                     fmt::format("sets the column of a random start, but start.kind is not {}.",
+                                 only_for(&StartRow::draws)));
   }
 }
 
-void refuse_void_spread(const Section& beads, const Scene& scene, Voids& voids) {
+void refuse_void_spread(const Section& beads, const Scene& scene, VoidKeys& void_keys) {
   if (start_row(scene.start).sets_radii && scene.spread != SizeSpread::none)
-    voids.refuse(beads, {"spread", "spread_width"},
-                 "radii are not drawn for the beads of a table; its column \"radius\" contains them.");
+    void_keys.refuse(beads, {"spread", "spread_width"},
+                     "radii are not drawn for the beads of a table; its column \"radius\" contains them.");
 }
 
 namespace {

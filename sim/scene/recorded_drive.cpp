@@ -9,7 +9,7 @@
 
 #include "core/constants.hpp"
 #include "core/error.hpp"
-#include "trajectory/motion_record.hpp"
+#include "trajectory/read_motion_record.hpp"
 #include "trajectory/record_doubts.hpp"
 
 namespace twincell::sim {

@@ -12,8 +12,8 @@
 #include <random>
 
 #include "core/error.hpp"
+#include "imaging/phase/dropped_frames.hpp"
 #include "imaging/phase/phases_of_times.hpp"
-#include "imaging/phase/sine_slips.hpp"
 #include "tests/support/complaint.hpp"
 
 using namespace twincell;

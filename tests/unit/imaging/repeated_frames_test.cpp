@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "imaging/phase/repeated_instants.hpp"
+#include "imaging/phase/phases_of_repeated_frames.hpp"
 
 using namespace twincell;
 using namespace twincell::imaging;

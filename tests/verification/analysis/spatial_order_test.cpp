@@ -14,7 +14,7 @@
 #include "analysis/order/bond_order.hpp"
 #include "analysis/order/defects.hpp"
 #include "analysis/order/grains.hpp"
-#include "analysis/order/orientation.hpp"
+#include "analysis/order/lattice_orientation.hpp"
 #include "tests/support/validation.hpp"
 
 using namespace twincell;

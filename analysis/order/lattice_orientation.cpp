@@ -1,4 +1,4 @@
-#include "analysis/order/orientation.hpp"
+#include "analysis/order/lattice_orientation.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "imaging/phase/sine_slips.hpp"
+#include "imaging/phase/dropped_frames.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 #include "core/constants.hpp"
 #include "core/median.hpp"
-#include "imaging/phase/lost_frame_costs.hpp"
+#include "imaging/phase/dropped_frame_costs.hpp"
 
 namespace twincell::imaging {
 

@@ -15,10 +15,10 @@ namespace twincell::sim {
 
 /// Collects keys that the scene does not use. A key that the user wrote is refused. A key from a preset or a
 /// calibration file gives way to the user's choice; it is removed and listed in Scene::void_keys.
-class Voids {
+class VoidKeys {
  public:
   /// \param lower names of the preset and of the calibration file, as they appear in messages
-  Voids(Config& config, std::vector<std::string> lower, std::vector<VoidKey>& told)
+  VoidKeys(Config& config, std::vector<std::string> lower, std::vector<VoidKey>& told)
       : config_(config), lower_(std::move(lower)), told_(told) {}
 
   /// Refuses keys of something that the scene does not have.

@@ -1,4 +1,4 @@
-#include "sim/scene/plan_limits.hpp"
+#include "sim/scene/plan_time_step.hpp"
 
 #include <fmt/format.h>
 
@@ -170,7 +170,7 @@ void require_sound_step(const Scene& s, const Plan& plan) {
 
 }  // namespace
 
-void limit_step(const Scene& s, const std::vector<Bead>& beads, Plan& plan) {
+void set_time_step(const Scene& s, const std::vector<Bead>& beads, Plan& plan) {
   const std::vector<BeadScale> sizes = sizes_of(s, beads, plan);
   set_bounds(s, sizes, plan);
   const double speed = std::max(

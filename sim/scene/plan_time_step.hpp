@@ -15,6 +15,6 @@ namespace twincell::sim {
 /// Requires the laws and walls of the plan.
 /// \param beads as in make_plan.hpp
 /// \throws ConfigError for a step that is too short, too many steps, or a plate that moves too far in one
-void limit_step(const Scene& scene, const std::vector<Bead>& beads, Plan& plan);
+void set_time_step(const Scene& scene, const std::vector<Bead>& beads, Plan& plan);
 
 }  // namespace twincell::sim

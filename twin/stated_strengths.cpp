@@ -1,4 +1,4 @@
-#include "twin/strengths.hpp"
+#include "twin/stated_strengths.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

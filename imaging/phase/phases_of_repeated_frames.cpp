@@ -1,4 +1,4 @@
-#include "imaging/phase/repeated_instants.hpp"
+#include "imaging/phase/phases_of_repeated_frames.hpp"
 
 #include <cstddef>
 #include <vector>

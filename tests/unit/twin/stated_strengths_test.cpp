@@ -1,5 +1,5 @@
 // Strengths stated for several stacks of one shaker, against the amplitudes of their plates.
-#include "twin/strengths.hpp"
+#include "twin/stated_strengths.hpp"
 
 #include <gtest/gtest.h>
 

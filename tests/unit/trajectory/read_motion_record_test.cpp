@@ -1,5 +1,5 @@
 // Recorded motions of a plate: interpolation, integration, and the files that are refused.
-#include "trajectory/motion_record.hpp"
+#include "trajectory/read_motion_record.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "trajectory/motion_record.hpp"
+#include "trajectory/read_motion_record.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
