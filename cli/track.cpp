@@ -194,7 +194,7 @@ std::pair<nlohmann::json, std::string> summary(const TrackOptions& o, const cali
                              {"paler", stack.paler}};
   if (stack.aspect)
     document["aspect"] = {{"value", stack.aspect->ratio}, {"standard_error", stack.aspect->error}};
-  document.update(nlohmann::json::parse(info.tracking_json));
+  document.update(film.report());
   if (const nlohmann::json said = imaging::restrictions(o.film.locating); !said.is_null())
     document["restrictions"] = said;
   std::string text =

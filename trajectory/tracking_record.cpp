@@ -2,7 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/json_text.hpp"
 #include "core/json_view.hpp"
 
 namespace twincell {
@@ -66,12 +65,6 @@ std::optional<std::string> recorded_disagreement(const TrajectoryInfo& info) {
   if (const auto clause = report.find("drive_disagreement"); clause != report.end())
     return clause->is_string() ? clause->get<std::string>() : "the stated drive does not fit the film";
   return report.contains("drive_check") ? std::optional(std::string()) : std::nullopt;
-}
-
-void add_to_tracking(TrajectoryInfo& info, const nlohmann::json& members) {
-  auto report = nlohmann::json::parse(info.tracking_json);
-  report.update(members);
-  info.tracking_json = json_text(report);
 }
 
 }  // namespace twincell

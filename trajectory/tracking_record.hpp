@@ -3,7 +3,6 @@
 /// What the program reads back from the report that `track` stores in a trajectory
 /// (TrajectoryInfo::tracking_json). Members that an earlier version did not store are absent.
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -38,8 +37,5 @@ std::optional<double> tracked_amplitude_error(const TrajectoryInfo& info);
 /// The clause that says how the drive in the film differs from the stated one; empty if it does not. No value
 /// if there was no check.
 std::optional<std::string> recorded_disagreement(const TrajectoryInfo& info);
-
-/// Adds members to the report of a trajectory that `track` has made.
-void add_to_tracking(TrajectoryInfo& info, const nlohmann::json& members);
 
 }  // namespace twincell

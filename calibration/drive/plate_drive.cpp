@@ -310,7 +310,7 @@ void look_for_plate_elsewhere(DriveCheck& check, const imaging::CellDescription&
 
 }  // namespace
 
-void record(const DriveCheck& check, TrajectoryInfo& info) {
+nlohmann::json report_of(const DriveCheck& check) {
   nlohmann::json members;
   if (check.by.empty())
     members["drive_check"] = {{"not_comparable", check.not_comparable}};
@@ -318,7 +318,7 @@ void record(const DriveCheck& check, TrajectoryInfo& info) {
     members["drive_check"] = {
         {"by", check.by}, {"amplitude", check.amplitude}, {"amplitude_error", check.amplitude_error}};
   if (!check.disagreement.empty()) members["drive_disagreement"] = check.disagreement;
-  add_to_tracking(info, members);
+  return members;
 }
 
 DriveCheck check_by_plate(const imaging::CellDescription& cell, const std::filesystem::path& stack,

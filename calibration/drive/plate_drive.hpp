@@ -4,6 +4,7 @@
 /// checked against the plate or the bed.
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -46,10 +47,10 @@ struct DriveCheck {
   /// A clause: an edge moves as a plate does, but neither at the stated place nor with the stated amplitude.
   std::string plate_elsewhere;
 };
-/// Adds the check to the tracking metadata of a trajectory: "drive_check" with "by", "amplitude",
+/// The check as members of the report of a tracked film: "drive_check" with "by", "amplitude",
 /// "amplitude_error" or with "not_comparable", and "drive_disagreement" if there is one. `compare` refuses a
 /// trajectory with "drive_disagreement".
-void record(const DriveCheck& check, TrajectoryInfo& info);
+nlohmann::json report_of(const DriveCheck& check);
 
 /// Compares the stated drive with the plate's edge in the first three cycles, at least 40 frames: the
 /// amplitude, the period in frames, and omega if frame rate and scale are known. A difference counts if it

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/json_text.hpp"
 #include "imaging/preprocess/open_flattened.hpp"
 #include "imaging/preprocess/region.hpp"
 #include "imaging/settings/check_scale.hpp"
@@ -38,7 +40,7 @@ imaging::LocatorOptions locator_of(const imaging::CellDescription& cell, const F
 }
 
 /// Plans the trajectory, checks the stated drive by the motion of the bed unless the plate has decided, and
-/// records the check.
+/// stores the report of both.
 TrackedFilm planned(FilmedCell filmed, imaging::TrackedStack stack, DriveCheck check,
                     const FilmOptions& options, StageTimes* times) {
   imaging::TrackPlan plan = [&] {
@@ -57,11 +59,23 @@ TrackedFilm planned(FilmedCell filmed, imaging::TrackedStack stack, DriveCheck c
       check.disagreement = contradiction_of_bed(bed, plan.info);
   }
   if (!check.doubt.empty()) stack.settings_doubts.push_back(check.doubt);
-  if (plan.info.drive && filmed.measured_drive.empty()) record(check, plan.info);
-  return {std::move(filmed.cell), std::move(stack), std::move(plan), std::move(check)};
+  const bool states_drive = plan.info.drive && filmed.measured_drive.empty();
+  TrackedFilm film{.cell = std::move(filmed.cell),
+                   .stack = std::move(stack),
+                   .plan = std::move(plan),
+                   .check = std::move(check),
+                   .states_drive = states_drive};
+  film.plan.info.tracking_json = json_text(film.report());
+  return film;
 }
 
 }  // namespace
+
+nlohmann::json TrackedFilm::report() const {
+  nlohmann::json document = imaging::tracking_report(stack, plan, cell);
+  if (states_drive) document.update(report_of(check));
+  return document;
+}
 
 FilmedCell check_beads(FilmedCell filmed, const OpenFrames& open, const std::filesystem::path& film,
                        const FilmOptions& options, const ProgressOf& progress) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,9 @@ struct TrackedFilm {
   imaging::TrackedStack stack;
   imaging::TrackPlan plan;
   DriveCheck check;
+  bool states_drive = false;  ///< the cell states the drive, so that the check belongs to the report
+  /// The report that `track` prints and stores: that of the tracking (tracking_report), and of the check.
+  [[nodiscard]] nlohmann::json report() const;
 };
 
 /// Opens the frames (prepare_frames); its argument is the options with which the beads are located.

@@ -53,7 +53,7 @@ TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell
   info.scale = cell.scale;
   info.scale.pixels_per_sigma = scale;
   info.source = "experiment";
-  info.tracking_json = tracking_json(stack, plan, cell);
+  info.tracking_json = json_text(tracking_report(stack, plan, cell));
   return plan;
 }
 
@@ -63,7 +63,8 @@ std::string TrackPlan::in_plate_note() const {
                      plural(in_plate, "track"), in_plate == 1 ? "is" : "are");
 }
 
-std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, const CellDescription& cell) {
+nlohmann::json tracking_report(const TrackedStack& stack, const TrackPlan& plan,
+                               const CellDescription& cell) {
   // Phases: only the measured quantities are present.
   const PhaseTable& phases = stack.phases;
   nlohmann::json lock = {{"method", row_of(kPhaseMethods, phases.method).word}};
@@ -138,7 +139,7 @@ std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, cons
   if (cell.included.camera)
     document["camera"]["covariance"] = {{"names", cell.included.camera->names},
                                         {"matrix", cell.included.camera->matrix}};
-  return json_text(document);
+  return document;
 }
 
 void write_trajectory(const TrackedStack& stack, const TrackPlan& plan, TrajectorySink& sink) {

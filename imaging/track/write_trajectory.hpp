@@ -3,6 +3,7 @@
 /// Writes a tracked stack as a trajectory.
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -31,10 +32,10 @@ struct TrackPlan {
 TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell, double diameter_px,
                           int shortest);
 
-/// Tracking report as JSON: method and quality of the phases, links, ambiguous links, tracers, and the map of
+/// Report of the tracking: method and quality of the phases, links, ambiguous links, tracers, and the map of
 /// the camera, with its covariance if a calibration supplied one. It is stored in the trajectory
-/// (docs/h5md.md). It names slots, not tracks.
-std::string tracking_json(const TrackedStack& stack, const TrackPlan& plan, const CellDescription& cell);
+/// as TrajectoryInfo::tracking_json (docs/h5md.md). It names slots, not tracks.
+nlohmann::json tracking_report(const TrackedStack& stack, const TrackPlan& plan, const CellDescription& cell);
 
 /// Writes the frames one by one. Time is in t0 if the drive and N_k are known (one period per N_k frames),
 /// otherwise it is the frame number. Velocity is absent. The plate height is present if the drive and the

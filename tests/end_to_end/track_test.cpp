@@ -287,6 +287,17 @@ TEST_F(DemoFilm, ATableOfBeadsIsTrackedAsItsFilm) {
   EXPECT_NE(columns.err.find("--columns: applies to a table of located beads (.csv)"), std::string::npos);
 }
 
+TEST_F(DemoFilm, TheReportIsPrintedAsItIsStored) {
+  const Ran ran = track({"--cell", cell_, "--frames", ":40"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const auto printed = nlohmann::json::parse(ran.out),
+             stored = nlohmann::json::parse(H5mdReader(folder_ / "exp.h5").info().tracking_json);
+  for (const char* member : {"camera", "drive_check", "links", "phase_lock", "tracers"})
+    EXPECT_TRUE(stored.contains(member)) << member;
+  for (const auto& [member, value] : stored.items())
+    EXPECT_EQ(printed.value(member, nlohmann::json()), value) << member;
+}
+
 // Another program counts from 1 and gives nothing but positions.
 TEST_F(DemoFilm, ATableOfAnotherProgram) {
   ASSERT_EQ(run_program({"locate", stack_, "--frames", ":40", "-o", folder_ / "beads.csv", "-q"}).code, 0);
