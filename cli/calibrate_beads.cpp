@@ -105,9 +105,10 @@ void add_calibrate_beads(CLI::App& calibrate, Common& common) {
                "effective number of layers. Prints them; -o also writes them to a calibration file.",
                "twincell calibrate beads frames/ --cell CELL.toml -o cell.calibration.toml");
   add_stack_flags(verb, common, o->flags, "beads");
-  verb.add_option("--frames", o->frames, "Number of frames that are evaluated, spread over the stack")
+  verb.add_option("--sampled-frames", o->frames, "Number of frames that are evaluated, spread over the stack")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
+  former_option(verb, "--frames", "--sampled-frames");
   verb.callback([o, &common] { run(*o, common); });
 }
 

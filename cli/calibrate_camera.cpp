@@ -302,9 +302,11 @@ void add_calibrate_camera(CLI::App& calibrate, Common& common) {
                             "the cell and the beads. Prints them; -o also writes them to a calibration file.",
                             "twincell calibrate camera frames/ --cell CELL.toml -o cell.calibration.toml");
   add_stack_flags(verb, common, o->flags, "edges");
-  verb.add_option("--frames", o->frames, "Number of frames in which beads are located, spread over the stack")
+  verb.add_option("--sampled-frames", o->frames,
+                  "Number of frames in which beads are located, spread over the stack")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
+  former_option(verb, "--frames", "--sampled-frames");
   verb.add_option("--target", o->target,
                   "Picture of a chessboard or of a grid of dots, to measure the tilt of the camera");
   verb.add_option("--target-kind", o->kind, "Pattern of --target: chessboard (default) or dots")

@@ -109,7 +109,7 @@ TEST(Calibrate, AStackOfUnknownScaleDriveAndPhaseComesBackAndItsTwinUsesThem) {
   const auto& tilt = w["measured"]["cell.side_tilt"];
   for (int side = 0; side < 2; ++side)
     EXPECT_LE(std::abs(tilt["value"][side].get<double>()), 3 * tilt["standard_error"][side].get<double>());
-  const nlohmann::json b = run_json({"calibrate", "beads", frames, "--cell", cell, "--frames", "5"});
+  const nlohmann::json b = run_json({"calibrate", "beads", frames, "--cell", cell, "--sampled-frames", "5"});
   EXPECT_NEAR(b["measured"]["beads.layers"]["value"].get<double>(), 58.0 / 12, 1e-9);
   EXPECT_NEAR(b["measured"]["beads.diameter"]["value"].get<double>(), 14.37, 0.03);
 
