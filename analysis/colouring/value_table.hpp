@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Numbers of beads from a table of the user's, by which a drawing colours the beads.
+/// Numbers of the beads from the user's table, by which a drawing colours them.
 
 #include <cstddef>
 #include <filesystem>
@@ -14,11 +14,11 @@ namespace twincell::analysis {
 class ValueTable {
  public:
   /// Reads a CSV file with the columns `frame` and `particle`, both counted from 0, and a column of numbers:
-  /// `value`, or else the only other one, whose name stands beside the colour bar.
+  /// `value`, or else the only other one, whose name labels the colour bar.
   ///
   /// \param n_frames, n_beads of the trajectory
   /// \throws InputError as read_table, and for a frame or particle that the trajectory does not have or that
-  /// has two rows; ConfigError if a column is missing or if several could be meant
+  /// has two rows; ConfigError if a column is missing or if several columns could be the number
   ValueTable(const std::filesystem::path& file, std::size_t n_frames, std::size_t n_beads);
 
   [[nodiscard]] const std::string& name() const { return name_; }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Numbers of the runs of a comparison: thresholds, and series over a cycle and over cycles.
+/// Figures of the runs of a comparison: thresholds, and series over a cycle and over cycles.
 
 #include <vector>
 

@@ -8,9 +8,11 @@
 
 namespace twincell::imaging {
 
-/// Pixels of regions that contain a dark disc of `in_radii` bead radii, or one of an even grey, and of
-/// straight bars with light behind them, with the blur of their edges. Under front light, which is uneven or
-/// noisy, only regions at the border of the picture count. \param image with its light and its darkness
+/// Marks the pixels of walls: of regions in which a disc of `in_radii` bead radii, dark or of an even grey,
+/// has room, and of straight bars with light behind them; both with their blurred edges. Under front light,
+/// which is uneven or noisy, only regions at the border of the picture count.
+///
+/// \param image with its light and its darkness
 /// \param bright beads and walls are brighter than the background
 /// \returns 255 there, else 0; empty: there are none
 cv::Mat1b wall_regions(const Prepared& image, bool bright, double radius_px, double in_radii);

@@ -41,34 +41,34 @@ HighlightSpot::Level HighlightSpot::inside(const Detection& disc, int x, int y) 
           kPerPixel * ((1 - s) * (below - a) + s * (both - right))};
 }
 
-HighlightSpot::Lesson::Lesson(double radius_px)
+HighlightSpot::Estimate::Estimate(double radius_px)
     : radius_(radius_px),
       sum_(cv::Mat1d::zeros(side_of(radius_px), side_of(radius_px))),
       weight_(sum_.clone()) {}
 
-void HighlightSpot::Lesson::add(const Detection& disc, int x, int y, double left) {
+void HighlightSpot::Estimate::add(const Detection& disc, int x, int y, double residual) {
   if (std::hypot(x - disc.x, y - disc.y) >= kEnd * disc.radius) return;
   const auto [i, j, s, t, outside] = place_of(disc, x, y, sum_.cols);
   if (outside) return;
   for (const int di : {0, 1})
     for (const int dj : {0, 1}) {
       const double share = (di == 0 ? 1 - s : s) * (dj == 0 ? 1 - t : t);
-      sum_(j + dj, i + di) += share * disc.darkness * left;
+      sum_(j + dj, i + di) += share * disc.darkness * residual;
       weight_(j + dj, i + di) += share * disc.darkness * disc.darkness;
     }
 }
 
-HighlightSpot HighlightSpot::Lesson::learnt() const {
+HighlightSpot HighlightSpot::Estimate::spot() const {
   constexpr double kFew = 0.5;  // discs in a cell at which the value is half of their mean
   const int side = sum_.cols, middle = side / 2;
-  cv::Mat1f spot(side, side);
+  cv::Mat1f values(side, side);
   for (int j = 0; j < side; ++j)
     for (int i = 0; i < side; ++i) {
       const double r = std::hypot(i - middle, j - middle) / kPerPixel / radius_,
                    kept = std::clamp((kEnd - r) / (kEnd - kWhole), 0.0, 1.0);
-      spot(j, i) = static_cast<float>(kept * sum_(j, i) / (weight_(j, i) + kFew));
+      values(j, i) = static_cast<float>(kept * sum_(j, i) / (weight_(j, i) + kFew));
     }
-  return HighlightSpot(spot);
+  return HighlightSpot(values);
 }
 
 }  // namespace twincell::imaging

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The highlight that all discs of a frame have in common beside their radial profile.
+/// The highlight that all discs of a frame have in common, in addition to their radial profile.
 
 #include <opencv2/core.hpp>
 
@@ -23,15 +23,16 @@ class HighlightSpot {
   }
   [[nodiscard]] bool empty() const { return side_ == 0; }
 
-  /// The spot as the mean of what discs show beside their profile.
-  class Lesson {
+  /// Estimates the spot: the mean residual of the discs after their profile is subtracted.
+  class Estimate {
    public:
     /// \param radius_px R
-    explicit Lesson(double radius_px);
-    /// A pixel of a disc; `left` is its darkness without profile, ground and neighbours.
-    void add(const Detection& disc, int x, int y, double left);
-    /// Cells that few discs show are drawn to 0, and the spot vanishes between 0.75 R and 0.9 R.
-    [[nodiscard]] HighlightSpot learnt() const;
+    explicit Estimate(double radius_px);
+    /// Adds a pixel of a disc; `residual` is its darkness without profile, ground and neighbours.
+    void add(const Detection& disc, int x, int y, double residual);
+    /// The spot. Cells that few discs show are shrunk towards 0, and the spot vanishes between 0.75 R and 0.9
+    /// R.
+    [[nodiscard]] HighlightSpot spot() const;
 
    private:
     double radius_;

@@ -21,7 +21,7 @@ namespace twincell::imaging {
 namespace {
 
 constexpr double kReach = 3;            // px outside the radius at which the outer rim has ended
-constexpr int kLessons = 2;             // rounds of learning the profile and searching for similar discs
+constexpr int kLearningRounds = 2;      // rounds of learning the profile and searching for similar discs
 constexpr int kRounds = 3;              // rounds of fitting and learning
 constexpr int kSweeps = 4;              // sweeps in a round
 constexpr double kSettled = 2e-3;       // displacement at which a round ends, px
@@ -457,17 +457,17 @@ class ProfileFit {
     return picture;
   }
 
-  /// Learns the spot: what the discs have in common inside their rims beside f.
+  /// Learns the spot: what the discs have in common inside their rims in addition to f.
   void learn_spot() {
-    HighlightSpot::Lesson lesson(radius_);
+    HighlightSpot::Estimate estimate(radius_);
     for (const Detection& b : beads_) {
       if (b.score < kMinScore) continue;
       over(b, [&](int x, int y, double) {
         const double left = static_cast<double>(image_.darkness(y, x)) - static_cast<double>(model_(y, x));
-        lesson.add(b, x, y, left + b.darkness * spot_.at(b, x, y).value);
+        estimate.add(b, x, y, left + b.darkness * spot_.at(b, x, y).value);
       });
     }
-    spot_ = lesson.learnt();
+    spot_ = estimate.spot();
     render();
   }
 
@@ -554,7 +554,7 @@ Refined refine_by_profile(const Prepared& image, const std::vector<Proposal>& pr
   ProfileFit fit(image, radius_px);
   fit.start(proposals);
   fit.learn(fit.typical_score());
-  for (int k = 0; k < kLessons && !fit.empty(); ++k) {
+  for (int k = 0; k < kLearningRounds && !fit.empty(); ++k) {
     fit.propose_similar();
     fit.learn(kLike);
   }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Conclusions from the numbers in the names of a folder's pictures: frames that are missing or doubled, and
+/// What the numbers in the names of a folder's pictures show: frames that are missing or doubled, and
 /// pictures of several series.
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace twincell::imaging::frames {
 
-/// Sorts names as the frames follow each other: in natural order, f_2 before f_10. Where all numbers have
-/// signs and both signs occur, as img-40 ... img-01, img+00 ... of a trigger in the middle, by the signed
-/// number.
+/// Sorts names in the order of the frames: in natural order, f_2 before f_10. If all numbers have signs and
+/// both signs occur, the order is that of the signed numbers: img-40 ... img-01, img+00 ... of a camera that
+/// was triggered in the middle of its recording.
 void sort_as_frames(std::vector<std::string>& names);
 
 /// Names that do not belong to the frames, such as background.png or overlay.png beside frame_0001.png …: one
