@@ -21,7 +21,8 @@ using nlohmann::json;
 /// Results that any figure needs. All figures request the same list, so that they share their points.
 constexpr const char* kResults =
     R"(["T_x", "T_y", "T_z", "T", "T_z_eq5", "T_z_field", "T_bar_z", "T_bar", "T_z_tau", "h_cm", "delta_h_cm", )"
-    R"("delta_h_bar", "profile_z", "phi_z", "T_z_z", "T_z_frames_z", "T_z_volume", "phi_top", "phi_cm"])";
+    R"("delta_h_bar", "profile_z", "phi_z", "T_z_z", "T_z_frames_z", "T_z_instant_z", "T_z_volume", )"
+    R"("phi_top", "phi_cm"])";
 
 constexpr double kSigmaMetres = 0.005, kGravity = 9.81;
 
@@ -60,7 +61,7 @@ std::vector<double> numbers_of(const json& array) {
 constexpr double kSameValue = 1e-9;  ///< relative difference below which two values of a key are the same
 
 /// The arrays over height that Gas::as_json writes on request.
-constexpr std::array kProfiles = {"profile_z", "phi_z", "T_z_z", "T_z_frames_z"};
+constexpr std::array kProfiles = {"profile_z", "phi_z", "T_z_z", "T_z_frames_z", "T_z_instant_z"};
 
 /// A point as Gas::as_json writes it.
 GasPoint point_of(const json& stored) {

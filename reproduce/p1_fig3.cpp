@@ -298,6 +298,20 @@ Target bouncing_target(const Size& size, const std::deque<Boundary>& all, int la
   return t;
 }
 
+/// What the beds that came to rest do to the order of the onsets, which the paper's criterion does not
+/// exclude.
+std::string without_beds_at_rest(const Boundary& random, const Boundary& crystal) {
+  const std::string had = fmt::format(
+      "s_c above sigma as the paper has it; {} of the {} random beds that exceed it had rearranged once and "
+      "come to rest",
+      random.at_rest, random.onset().yes);
+  if (random.at_rest + crystal.at_rest == 0) return had;
+  return had + fmt::format(" (crystals: {} of {}); without them random {}, crystal {}, the order: {}",
+                           crystal.at_rest, crystal.onset().yes, random.onset_of_moving.text(),
+                           crystal.onset_of_moving.text(),
+                           word_of(above(crystal.onset_of_moving, random.onset_of_moving)));
+}
+
 Target crystal_above_random(const Size& size, const std::deque<Boundary>& all, int layers) {
   Target t{fmt::format("onset of convection, N_l = {}", layers), "crystal above random", "", Verdict::absent,
            ""};
@@ -309,11 +323,7 @@ Target crystal_above_random(const Size& size, const std::deque<Boundary>& all, i
         crystal->onset().text(), random->onset().text(),
         std::abs(evidence_above(crystal->onset(), random->onset())) / 2);
     t.verdict = above(crystal->onset(), random->onset());
-    if (random->at_rest > 0)
-      t.reason = fmt::format(
-          "s_c above sigma as the paper has it; {} of the {} random beds that exceed it had rearranged once "
-          "and come to rest",
-          random->at_rest, random->onset().yes);
+    t.reason = without_beds_at_rest(*random, *crystal);
     t.runs =
         fmt::format("{} and {} runs, {} cycles", crystal->onset().n, random->onset().n, size.convect_cycles);
     if (t.verdict == Verdict::inconclusive)
@@ -404,14 +414,17 @@ std::vector<Target> targets_of(const Size& size, const std::deque<Boundary>& all
 
 /// Look of the onsets of one start and one verdict.
 struct Style {
-  bool random, convecting;
+  bool random, convecting, moving;  ///< moving: the onset without beds that had come to rest
   int point;
   const char *colour, *title;
 };
-constexpr std::array<Style, 4> kStyles = {{{true, true, 9, analysis::colours::kGreen, "convection, random"},
-                                           {false, true, 7, analysis::colours::kBlue, "convection, crystal"},
-                                           {true, false, 8, analysis::colours::kGreen, "bouncing, random"},
-                                           {false, false, 6, analysis::colours::kBlue, "bouncing, crystal"}}};
+constexpr std::array<Style, 6> kStyles = {
+    {{true, true, false, 9, analysis::colours::kGreen, "convection, random"},
+     {false, true, false, 7, analysis::colours::kBlue, "convection, crystal"},
+     {true, false, false, 8, analysis::colours::kGreen, "bouncing, random"},
+     {false, false, false, 6, analysis::colours::kBlue, "bouncing, crystal"},
+     {true, true, true, 11, analysis::colours::kGreen, "random, none at rest"},
+     {false, true, true, 13, analysis::colours::kBlue, "crystal, none at rest"}}};
 
 /// The figure so far: data blocks, the clauses of the plot command, and the ranges of the axes.
 struct Drawing {
@@ -425,14 +438,16 @@ struct Drawing {
 /// Onsets of the runs in one style, one data block of values and one of limits. Values with error bars if the
 /// interval is closed, arrows for one-sided limits. Lines join values at consecutive heights and do not pass
 /// over a limit. Random and crystal points are shifted slightly to the left and right of their N_l, so that
-/// the bars do not overlap.
+/// the bars do not overlap. Onsets without beds at rest stand further out, unconnected, at the heights where
+/// there were such beds; elsewhere they are the same as with them.
 void add_onsets(Drawing& d, const std::deque<Boundary>& all, const Style& style) {
   std::string values, limits;
   bool limit_before = false;
   for (const Boundary& b : all) {
     if (b.random != style.random || b.convecting != style.convecting || !b.begun()) continue;
-    const Onset& o = b.onset();
-    const double x = b.layers + (b.random ? -0.5 : 0.5);
+    if (style.moving && b.at_rest == 0) continue;
+    const Onset& o = style.moving ? b.onset_of_moving : b.onset();
+    const double x = b.layers + (b.random ? -1 : 1) * (style.moving ? 1.5 : 0.5);
     d.n_l.show(x);
     for (const auto& end : {o.value, o.low, o.high})
       if (end) d.gamma.show(*end);
@@ -452,7 +467,10 @@ void add_onsets(Drawing& d, const std::deque<Boundary>& all, const Style& style)
     d.plot += fmt::format("{}'{}.dat' index {} using 1:2:3:4 with {} lc rgb '{}' {}",
                           d.plot.empty() ? "" : ", ", d.figure.name, d.index++, drawn, style.colour, title);
   };
-  add(values, fmt::format("yerrorlines lw {} ps 1.2 pt {}", analysis::figure_style::kLine, style.point),
+  if (style.moving && values.empty() && limits.empty()) return;
+  add(values,
+      fmt::format("{} lw {} ps {} pt {}", style.moving ? "yerrorbars" : "yerrorlines",
+                  analysis::figure_style::kLine, style.moving ? 0.8 : 1.2, style.point),
       fmt::format("title '{}'", style.title));
   add(limits, "vectors head filled lw 1.5", "notitle");
 }
@@ -495,7 +513,8 @@ analysis::Figure figure_of(const std::deque<Boundary>& all, const std::vector<Fi
   d.figure.caption =
       "Onset of bouncing (open) and of convection (filled) against the height of the bed, from random starts "
       "(triangles) and from crystals (circles), drawn a little to the left and to the right, with 95 % "
-      "intervals; arrows are one-sided limits.";
+      "intervals; arrows are one-sided limits. Small symbols further out (none at rest): the onset of "
+      "convection without beds that had rearranged once and come to rest, where there were any.";
   d.figure.caption += filmed.empty()
                           ? " The paper's experiment is a drawing without numbers; --data draws yours as "
                             "connected squares."

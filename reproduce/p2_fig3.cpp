@@ -17,7 +17,9 @@ namespace twincell::reproduce {
 
 namespace {
 
-constexpr int kRpm[] = {500, 600, 700};  ///< W = 1.397 < W_f, 2.012, 2.739 = W_f
+/// W = 1.397, 2.012 and 2.739. The paper states of its three snapshots only W < W_f, W just below W_f and
+/// W = W_f.
+constexpr int kRpm[] = {500, 600, 700};
 constexpr std::size_t kLayers = 4;
 
 /// Share of mobile beads per layer: beads that move by more than a fifth of a diameter relative to the centre
@@ -76,8 +78,8 @@ struct BedSnapshot {
 
 /// One figure for each snapshot, all with the same scales of length and of speed.
 std::vector<analysis::Figure> snapshot_figures(const std::vector<BedSnapshot>& all) {
-  static constexpr std::array<const char*, 3> kRelations = {"below the paper’s W_f", "below the paper’s W_f",
-                                                            "the paper’s W_f"};
+  static constexpr std::array<const char*, 3> kRelations = {
+      "for the paper’s W < W_f", "for the paper’s W ≲ W_f", "for the paper’s W = W_f"};
   constexpr double kShown = 12;  // a bead thrown high must not shrink the bed
   double top = 0, fastest = 0;
   for (const BedSnapshot& s : all)
@@ -115,7 +117,7 @@ std::vector<analysis::Figure> snapshot_figures(const std::vector<BedSnapshot>& a
             fastest, f.name, s.frame.plate_height);
     f.caption =
         "A smooth bed of the plane at the beginning of a cycle, up to 12 d; the scale of speed is the same "
-        "in (a), (b) and (c). Form of Bhateja et al. 2016, Fig. 3.";
+        "in (a), (b) and (c). The paper states W relative to W_f alone. Form of Bhateja et al. 2016, Fig. 3.";
     figures.push_back(f);
   }
   return figures;
@@ -153,16 +155,17 @@ Reproduction run(const Request& request) {
   const auto said = [&](std::size_t k) {
     return fmt::format("lowest {:.2f}, highest {:.2f}", mobile[k][0], mobile[k][kLayers - 1]);
   };
-  r.targets = {
-      {"W = 1.397 < W_f: only the upper layers are mobilized", "lowest layer less than half of the highest",
-       said(0), holds(mobile[0][0] < mobile[0][kLayers - 1] / 2),
-       "mobile: 0.2 d relative to the centre of mass within a cycle; in a bed that begins by moving along "
-       "with the plate, the lower layers hardly move (docs/reproduce.md)"},
-      {"W = 2.739, the paper’s W_f: all layers are agitated", "every layer more than half mobile", said(2),
-       holds(*std::min_element(mobile[2].begin(), mobile[2].end()) > 0.5), ""},
-      {"the lowest layer moves more at the paper’s W_f than at W = 1.397", "more",
-       fmt::format("{:.2f}, {:.2f}, {:.2f}", mobile[0][0], mobile[1][0], mobile[2][0]),
-       holds(mobile[0][0] < mobile[2][0]), ""}};
+  r.targets = {{"W < W_f, here 1.397: only the upper layers are mobilized",
+                "lowest layer less than half of the highest", said(0),
+                holds(mobile[0][0] < mobile[0][kLayers - 1] / 2),
+                "the paper states no W; mobile: 0.2 d relative to the centre of mass within a cycle; in a "
+                "bed that begins by moving along with the plate, the lower layers hardly move "
+                "(docs/reproduce.md)"},
+               {"W = W_f, here 2.739: all layers are agitated", "every layer more than half mobile", said(2),
+                holds(*std::min_element(mobile[2].begin(), mobile[2].end()) > 0.5), ""},
+               {"the lowest layer moves more at W = W_f, here 2.739, than at W < W_f, here 1.397", "more",
+                fmt::format("{:.2f}, {:.2f}, {:.2f}", mobile[0][0], mobile[1][0], mobile[2][0]),
+                holds(mobile[0][0] < mobile[2][0]), ""}};
   r.measured = json_text(measured);
   r.conditions = {"beds begin abruptly from rest, as in Fig. 2",
                   "split integrator, n = 6.37 steps per contact",

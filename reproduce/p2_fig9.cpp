@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include "calibration/fit/curve_fit.hpp"
 #include "reproduce/alternatives.hpp"
@@ -90,9 +91,28 @@ void add_panel(Gas& gas, const GasSystem& system, Panel& panel, const GasSize& s
   }
 }
 
-std::optional<Estimate> at_w(const Gas& gas, std::size_t curve, double w) {
+/// Points that a target uses: whether the cap of cycles ended each before T_bar_z was as precise as asked.
+/// Panels share their canonical points, which count once.
+struct Used {
+  std::map<std::string, bool> at_cap = {};  ///< by GasPoint::id
+
+  void add(const GasPoint& p) { at_cap[p.id] = !p.precise; }
+  void add(const Used& other) { at_cap.insert(other.at_cap.begin(), other.at_cap.end()); }
+  /// "; 3 of 24 points at their cap"
+  [[nodiscard]] std::string text() const {
+    return fmt::format("; {} of {} points at their cap",
+                       std::ranges::count_if(at_cap, [](const auto& p) { return p.second; }), at_cap.size());
+  }
+};
+
+/// T_bar_z of the point at this W, which is entered into the points used.
+std::optional<Estimate> at_w(const Gas& gas, std::size_t curve, double w, Used& used) {
   for (const GasPoint& p : gas.points(curve))
-    if (std::abs(p.at / w - 1) < 0.01) return p.get("T_bar_z");
+    if (std::abs(p.at / w - 1) < 0.01) {
+      const auto t = p.get("T_bar_z");
+      if (t) used.add(p);
+      return t;
+    }
   return std::nullopt;
 }
 
@@ -100,16 +120,18 @@ Target close_to_each_other(const Gas& gas, const Panel& p) {
   Target t{"(a) k_n = 1e5, 1e6, 1e7: T_bar_z", "the same within 5 %", "", Verdict::absent, ""};
   std::vector<Verdict> verdicts;
   double most = 0;
+  Used used;
   for (const double w : {w_of_rpm(900), w_of_rpm(1200), w_of_rpm(2000)})
     for (const std::size_t other : {std::size_t{0}, std::size_t{2}}) {
-      const auto a = at_w(gas, p.curves[other], w), b = at_w(gas, p.curves[1], w);
+      const auto a = at_w(gas, p.curves[other], w, used), b = at_w(gas, p.curves[1], w, used);
       if (!a || !b) continue;
       const Estimate q = quotient(*a, *b);
       most = std::max(most, std::abs(q.value - 1));
       verdicts.push_back(judge(q, 0.95, 1.05));
     }
   if (verdicts.empty()) return t;
-  t.measured = fmt::format("largest deviation from k_n = 1e6 {:.2g} % at W = 4.5, 8, 22", 100 * most);
+  t.measured =
+      fmt::format("largest deviation from k_n = 1e6 {:.2g} % at W = 4.5, 8, 22", 100 * most) + used.text();
   t.verdict = all_of(verdicts);
   return t;
 }
@@ -119,23 +141,24 @@ Target with_parameter(const Gas& gas, const Panel& p, bool rising, const std::st
                       const std::string& expected) {
   Target t{name, expected, "", Verdict::absent, ""};
   std::vector<Estimate> all;
+  Used used;
   for (std::size_t k = 0; k < p.values.size(); ++k) {
-    const auto e = at_w(gas, p.curves[k], w_of_rpm(2000));
+    const auto e = at_w(gas, p.curves[k], w_of_rpm(2000), used);
     if (!e) continue;
     t.measured +=
         fmt::format("{}{:g}: {}", t.measured.empty() ? p.symbol + " = " : ", ", p.values[k], e->text());
     all.push_back(*e);
   }
-  if (all.size() > 1) t.measured += " at W = 22.4";
+  if (all.size() > 1) t.measured += " at W = 22.4" + used.text();
   t.verdict = trend_of(all, rising).verdict;
   return t;
 }
 
 /// Largest over smallest T_bar_z of a panel at W = 22.
-std::optional<Estimate> reach(const Gas& gas, const Panel& p) {
+std::optional<Estimate> reach(const Gas& gas, const Panel& p, Used& used) {
   std::vector<Estimate> all;
   for (const std::size_t curve : p.curves) {
-    const auto e = at_w(gas, curve, w_of_rpm(2000));
+    const auto e = at_w(gas, curve, w_of_rpm(2000), used);
     if (!e) return std::nullopt;
     all.push_back(*e);
   }
@@ -192,10 +215,12 @@ std::vector<Target> parameter_targets(const Gas& gas, const SystemPanels& of) {
       with_parameter(gas, of.of("mu"), false, "(c) T_bar_z with mu", "falls slightly"),
       with_parameter(gas, of.of("N"), false, "(d) T_bar_z with N", "falls")};
   Target order{"most impact: N; least: mu", "N above e above mu", "", Verdict::absent, ""};
-  const auto n = reach(gas, of.of("N")), e = reach(gas, of.of("e")), mu = reach(gas, of.of("mu"));
+  Used used;
+  const auto n = reach(gas, of.of("N"), used), e = reach(gas, of.of("e"), used),
+             mu = reach(gas, of.of("mu"), used);
   if (n && e && mu) {
-    order.measured =
-        fmt::format("largest over smallest at W = 22.4: N {}, e {}, mu {}", n->text(), e->text(), mu->text());
+    order.measured = fmt::format("largest over smallest at W = 22.4: N {}, e {}, mu {}{}", n->text(),
+                                 e->text(), mu->text(), used.text());
     // How far N and e are varied is not the same quantity, so their order cannot fail the target.
     order.verdict = all_of({above(*n, *mu), above(*e, *mu),
                             above(*n, *e) == Verdict::pass ? Verdict::pass : Verdict::inconclusive});
@@ -211,6 +236,7 @@ struct Exponent {
   std::optional<Estimate> alpha;     ///< absent for fewer than three points
   std::string window = "no window";  ///< "[2.74, 50.3], without 4.53, where the bed bounces as a block"
   bool ends_with_data = false;       ///< T_bar_z still falls between the last two points: W_2 is not reached
+  Used used = {};                    ///< points of the window, and the last one, which decides W_2
 };
 
 /// W at which T_bar_z is less than half of that at both neighbouring W: the bed bounces as a block there, and
@@ -234,15 +260,18 @@ Exponent exponent_of(const std::vector<GasPoint>& points) {
   x.window = fmt::format("[{:.3g}, {:.3g}]", peak->grid, *w_2);
   std::vector<double> v_p;
   std::vector<Estimate> t_z;
+  const GasPoint* last = nullptr;
   for (const GasPoint& p : points) {
     const auto t = p.get("T_z");
+    if (t) last = &p;
     if (!t || p.at < peak->grid || p.at > *w_2 || p.solid()) continue;
     if (std::ranges::find(blocks, p.at) != blocks.end())
       x.window += fmt::format(", without {:.3g}, where the bed bounces as a block", p.at);
     else
-      v_p.push_back(std::sqrt(p.at)), t_z.push_back(*t);
+      v_p.push_back(std::sqrt(p.at)), t_z.push_back(*t), x.used.add(p);
   }
   x.ends_with_data = *w_2 == points.back().at;
+  if (last != nullptr) x.used.add(*last);
   if (x.ends_with_data) x.window += ", where the data end: W_2 is not reached";
   if (v_p.size() < 3) return x;
   std::vector<calibration::DataPoint> data;
@@ -255,21 +284,25 @@ Exponent exponent_of(const std::vector<GasPoint>& points) {
 struct Exponents {
   std::vector<double> values;  ///< those with an alpha
   std::vector<Estimate> alpha;
-  std::string text;               ///< "N = 2: 1.91 [1.87, 1.95], 4: ..."
-  std::string table;              ///< one line per value, with its window
-  bool whole = false;             ///< whether every value has an alpha
-  std::vector<double> open = {};  ///< values whose window ends with the data instead of at W_2
+  std::string text;                ///< "N = 2: 1.91 [1.87, 1.95], 4: ..."
+  std::string table;               ///< one line per value, with its window
+  bool whole = false;              ///< whether every value has an alpha
+  std::vector<double> open = {};   ///< values whose window ends with the data instead of at W_2
+  Used used = {};                  ///< points of all windows
+  std::vector<Used> used_of = {};  ///< points of the window of each of `values`
 };
 
 Exponents exponents_of(const Gas& gas, const Panel& p) {
   Exponents x;
   for (std::size_t k = 0; k < p.values.size(); ++k) {
-    const auto [alpha, window, ends_with_data] = exponent_of(gas.points(p.curves[k]));
-    x.table += fmt::format("  {:<20} {} over {}\n", gas.curve(p.curves[k]).name,
-                           alpha ? alpha->text() : "too few points", window);
+    const auto [alpha, window, ends_with_data, used] = exponent_of(gas.points(p.curves[k]));
+    x.table += fmt::format("  {:<20} {} over {}{}\n", gas.curve(p.curves[k]).name,
+                           alpha ? alpha->text() : "too few points", window, used.text());
     if (!alpha) continue;
     x.values.push_back(p.values[k]);
     x.alpha.push_back(*alpha);
+    x.used_of.push_back(used);
+    x.used.add(used);
     if (ends_with_data) x.open.push_back(p.values[k]);
     x.text += fmt::format("{}{:g}: {}", x.text.empty() ? p.symbol + " = " : ", ", p.values[k], alpha->text());
   }
@@ -292,7 +325,7 @@ std::vector<Target> exponent_targets(const Gas& gas, const SystemPanels& of) {
   const auto target = [](const char* name, const char* expected, const Exponents& x, auto judged) {
     Target t{name, expected, "", Verdict::absent, ""};
     if (!x.whole) return t;
-    t.measured = x.text;
+    t.measured = x.text + x.used.text();
     t.verdict = judged();
     weigh_open_windows(t, x.open);
     return t;
@@ -305,12 +338,15 @@ std::vector<Target> exponent_targets(const Gas& gas, const SystemPanels& of) {
   Target deep{"alpha for N >= 6", "1.0 +- 0.2", "", Verdict::absent, ""};
   if (n.whole) {
     std::vector<Verdict> verdicts;
+    Used used;
     for (std::size_t k = 0; k < n.values.size(); ++k)
       if (n.values[k] >= 6) {
+        used.add(n.used_of[k]);
         verdicts.push_back(judge(n.alpha[k], 0.8, 1.2));
         deep.measured +=
             fmt::format("{}N = {:g}: {}", deep.measured.empty() ? "" : ", ", n.values[k], n.alpha[k].text());
       }
+    deep.measured += used.text();
     deep.verdict = all_of(verdicts);
     std::vector<double> open = n.open;
     std::erase_if(open, [](double layers) { return layers < 6; });
@@ -338,19 +374,35 @@ std::size_t counted_system(const Study& study) {
   }));
 }
 
+/// The targets of one system, which states what the others measure. Each target names the system that decides
+/// it, and the one whose verdict would be better.
+std::vector<Target> decided_by(const std::vector<Alternative>& all, std::size_t counted) {
+  std::vector<Target> targets = stating_all(all, counted);
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    Target& t = targets[k];
+    if (t.verdict == Verdict::absent) continue;
+    t.reason += fmt::format("{}{} decides", t.reason.empty() ? "" : "; ", all[counted].name);
+    for (const Alternative& other : all)
+      if (const Verdict v = other.targets[k].verdict;
+          v != Verdict::absent && v != t.verdict && best_of(v, t.verdict) == v)
+        t.reason += fmt::format(", {} comes closer", other.name);
+  }
+  return targets;
+}
+
 Reproduction run_9(const Request& request) {
   const Study study(request, true);
   const Gas& gas = study.gas;
   const std::size_t counted = counted_system(study);
   Reproduction r = begun(study, "Bhateja et al. 2016, Fig. 9: temperature with k_n, e, mu and N", counted);
-  r.targets = stating_all(by_system(study,
-                                    [](const Gas& runs, const SystemPanels& of) {
-                                      std::vector<Target> targets = {close_to_each_other(runs, of.of("k_n"))};
-                                      for (Target& t : parameter_targets(runs, of))
-                                        targets.push_back(std::move(t));
-                                      return targets;
-                                    }),
-                          counted);
+  r.targets = decided_by(by_system(study,
+                                   [](const Gas& runs, const SystemPanels& of) {
+                                     std::vector<Target> targets = {close_to_each_other(runs, of.of("k_n"))};
+                                     for (Target& t : parameter_targets(runs, of))
+                                       targets.push_back(std::move(t));
+                                     return targets;
+                                   }),
+                         counted);
   for (const SystemPanels& of : study.all)
     for (const Panel& p : of.panels) {
       std::vector<Series> series;
@@ -378,7 +430,7 @@ Reproduction run_10(const Request& request) {
   const std::size_t counted = counted_system(study);
   Reproduction r =
       begun(study, "Bhateja et al. 2016, Fig. 10: alpha over [W_f, W_2] with e, mu and N", counted);
-  r.targets = stating_all(by_system(study, exponent_targets), counted);
+  r.targets = decided_by(by_system(study, exponent_targets), counted);
   for (const SystemPanels& of : study.all)
     for (const Panel& p : of.panels) r.table += exponents_of(gas, p).table;
   for (const Panel& p : study.all.front().panels) {

@@ -83,12 +83,14 @@ std::string papers_page(const std::vector<Document>& documents, const std::strin
       "One rule gives every verdict. It compares the 95 % interval of the measured value with the target:\n\n"
       "| verdict | meaning |\n|---|---|\n";
   for (const auto& verdict : kVerdicts) s += fmt::format("| {} | {} |\n", verdict.word, verdict.help);
-  s += "\nStatements about an order use the interval of the difference. A statement about a count or about "
-       "bits has no interval.\nThe sum counts each statement of the papers about a result once. It leaves "
-       "out entries that check the program (tables of\nparameters, closed forms), entries that judge the "
-       "targets of other figures under other assumptions, and single targets whose\nverdict says why.\n"
-       "The cost is the processor time of the runs that a figure uses; \"–\" means that it was not recorded. "
-       "Figures that share runs\neach state the whole cost.\n\n## Summary\n\n| |";
+  s +=
+      "\nStatements about an order use the interval of the difference. A statement about a count or about "
+      "bits has no interval.\nThe sum counts each statement of the papers about a result once. It leaves "
+      "out entries that check the program (tables of\nparameters, closed forms), entries that judge the "
+      "targets of other figures under other assumptions, and single targets whose\nverdict says why.\n"
+      "The cost is the processor time of the runs that a figure uses. Figures that share runs each state the "
+      "whole cost. \"–\" means that\nit was not recorded: the runs are of a version that did not store their "
+      "time. As runs end early, their number and their\nlargest length do not give it.\n\n## Summary\n\n| |";
   for (const auto& verdict : kVerdicts) s += fmt::format(" {} |", verdict.word);
   s += " core-minutes |\n|---|";
   for (std::size_t k = 0; k <= kVerdicts.size(); ++k) s += "---|";

@@ -11,10 +11,13 @@
 namespace twincell::analysis {
 namespace {
 
-constexpr NamedResult kResults[] = {
-    {.name = "profile_z", .along = "profile_z"},    {.name = "phi_z", .along = "profile_z", .elsewhere = 0},
-    {.name = "T_z_z", .along = "profile_z"},        {.name = "T_x_z", .along = "profile_z"},
-    {.name = "T_z_frames_z", .along = "profile_z"}, {"T_z_volume"}};
+constexpr NamedResult kResults[] = {{.name = "profile_z", .along = "profile_z"},
+                                    {.name = "phi_z", .along = "profile_z", .elsewhere = 0},
+                                    {.name = "T_z_z", .along = "profile_z"},
+                                    {.name = "T_x_z", .along = "profile_z"},
+                                    {.name = "T_z_frames_z", .along = "profile_z"},
+                                    {.name = "T_z_instant_z", .along = "profile_z"},
+                                    {"T_z_volume"}};
 
 const char* const kSource = "Bhateja, Sharma & Singh 2016, Figs. 12 to 16";
 
@@ -41,8 +44,9 @@ struct Slab {
       0;           ///< overlap of the beads with the slab, summed over frames: sigma^2 (2D) or sigma^3 (3D)
   Spread w, u;     ///< vertical velocity, horizontal velocity along x
   double now = 0;  ///< current frame: sum of m (w - w_cm)^2
-  std::size_t n_now = 0;   ///< current frame: number of beads
-  double over_frames = 0;  ///< sum over frames of the mean over beads
+  Spread w_now;    ///< current frame: vertical velocity
+  double over_frames = 0;    ///< sum over frames of the mean over beads
+  double over_instants = 0;  ///< the same of m (w - <w>)^2, <w> the mean of the slab in the frame
 };
 
 class Profiles : public Observable {
@@ -80,16 +84,19 @@ class Profiles : public Observable {
       slab.w.add(mass, frame.velocity[i].z());
       slab.u.add(mass, frame.velocity[i].x());
       slab.now += mass * (frame.velocity[i].z() - drift) * (frame.velocity[i].z() - drift);
-      ++slab.n_now;
+      slab.w_now.add(mass, frame.velocity[i].z());
     }
     for (auto& [k, slab] : slabs_) {
-      if (slab.n_now > 0) slab.over_frames += slab.now / static_cast<double>(slab.n_now);
-      slab.now = 0, slab.n_now = 0;
+      if (const auto n = static_cast<double>(slab.w_now.n); n > 0) {
+        slab.over_frames += slab.now / n;
+        slab.over_instants += slab.w_now.sum / n;
+      }
+      slab.now = 0, slab.w_now = {};
     }
   }
 
   [[nodiscard]] std::vector<Result> results() const override {
-    std::vector<double> z, phi, t_z, t_x, t_frames;
+    std::vector<double> z, phi, t_z, t_x, t_frames, t_instant;
     const Vec3 size = info_.box.size();
     const double slab_size = thickness_ * size.x() * (info_.box.dimension == 2 ? 1 : size.y());
     for (const auto& [k, slab] : slabs_) {
@@ -98,7 +105,11 @@ class Profiles : public Observable {
       phi.push_back(slab.filled / slab_size / static_cast<double>(frames_));
       t_z.push_back(slab.w.temperature());
       t_x.push_back(slab.u.temperature());
-      t_frames.push_back(slab.w.n < kProfileSamples ? kNaN : slab.over_frames / static_cast<double>(frames_));
+      const auto mean = [&](double over_frames) {
+        return slab.w.n < kProfileSamples ? kNaN : over_frames / static_cast<double>(frames_);
+      };
+      t_frames.push_back(mean(slab.over_frames));
+      t_instant.push_back(mean(slab.over_instants));
     }
     const std::string none = "no frame holds a bead";
     const std::string cold =
@@ -126,6 +137,12 @@ class Profiles : public Observable {
         array("T_z_frames_z", t_frames, "m g sigma",
               "mean over frames of the mean over beads of m (w - w_cm)^2, a frame in which the slab is empty "
               "counting as 0; no factor 1/2; NaN with fewer than 100 velocities",
+              cold),
+        array("T_z_instant_z", t_instant, "m g sigma",
+              "mean over frames of the mean over beads of m (w - <w>)^2, <w> the mean of the slab in the "
+              "frame, a frame with fewer than two beads in the slab counting as 0; no factor 1/2; NaN with "
+              "fewer than "
+              "100 velocities",
               cold),
         volume_mean()};
   }

@@ -25,6 +25,9 @@ inline constexpr std::size_t kProfileSamples = 100;  ///< minimum number of bead
 ///   the velocity of the centre of mass of all beads in the frame. A frame in which the slab is empty counts
 ///   as 0. This profile falls to 0 with height, as the paper's profiles do and T_z_z does not; the paper
 ///   states only "averaging T_z in a box"
+/// - T_z_instant_z: mean over frames of the mean over the slab's beads of m (w - <w>_now)^2, m g sigma, with
+///   <w>_now the mean of the slab in that frame. A frame with fewer than two beads in the slab counts as 0.
+///   This profile falls to 0 with height too
 /// - T_x_z: as T_z_z, for the horizontal velocity along x
 /// - profile_z: centres of the slabs, sigma
 /// - T_z_volume: scalar, mean of T_z_z over the lowest slabs that contain 99 % of the beads. This is an

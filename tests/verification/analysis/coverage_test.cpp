@@ -729,6 +729,7 @@ TEST(Coverage, EveryResultWithAnInterval) {
                                          "T_z_z",
                                          "T_x_z",
                                          "T_z_frames_z",
+                                         "T_z_instant_z",
                                          "T_z_volume",
                                          "h_cm_k",
                                          "h_cm_j",

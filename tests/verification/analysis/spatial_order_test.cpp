@@ -625,4 +625,30 @@ TEST(Profiles, ASlabThatIsEmptyHalfOfTheTimeHasHalfTheTemperatureOverFrames) {
   EXPECT_NEAR(over.values[2], 2, 1e-12);
   // There are no fluctuations about the mean of the slab.
   for (const double t : find_result(results, "T_z_z").values) EXPECT_NEAR(t, 0, 1e-12);
+  for (const double t : find_result(results, "T_z_instant_z").values) EXPECT_EQ(t, 0);
+}
+
+TEST(Profiles, TheTemperatureOfTheInstantLeavesOutTheCommonMotionOfASlab) {
+  // Beads of mass 1 with w = c + 1 and c - 1 in the lowest slab, where c = +-3 by frames; a third bead is
+  // alone in its slab in half of the frames, and with another one at w + 4 in the others.
+  std::vector<Frame> frames;
+  Box box;
+  box.upper = Vec3(10, 1, 30);
+  for (int f = 0; f < 400; ++f) {
+    const double c = f % 2 == 0 ? 3 : -3;
+    Frame frame;
+    frame.step = f;
+    frame.position = {Vec3(2, 0, 0.5), Vec3(4, 0, 0.5), Vec3(3, 0, 5.5), Vec3(5, 0, c > 0 ? 5.5 : 7.5)};
+    frame.velocity = {Vec3(0, 0, c + 1), Vec3(0, 0, c - 1), Vec3(0, 0, c), Vec3(0, 0, c + 4)};
+    frames.push_back(frame);
+  }
+  const auto results = analyze(film(frames, box));
+  ASSERT_EQ(find_result(results, "profile_z").values, (std::vector<double>{0.5, 5.5, 7.5}));
+  const Result& t = find_result(results, "T_z_instant_z");
+  test::validate({"V5.15", "T_z of the instant, two beads at +-1 about their mean", 1, 1e-12, "(1 + 1)/2"},
+                 t.values[0]);
+  test::validate({"V5.15", "T_z of the instant, two beads at +-2 in half of the frames", 2, 1e-12, "4/2"},
+                 t.values[1]);
+  EXPECT_EQ(t.values[2], 0);
+  EXPECT_NEAR(find_result(results, "T_z_z").values[0], 10, 1e-12);  // with the variance 9 of c
 }
