@@ -38,7 +38,7 @@ set linetype 6 lc rgb '#56B4E9' pt 15 ps 0.9 lw 1.3
 set linetype 7 lc rgb '#000000' pt 6 ps 0.9 lw 1.3
 set linetype 8 lc rgb '#9A9A9A' pt 4 ps 0.9 lw 1.3
 set xlabel 'N_l σ'
-set xrange [6.66:83.34]
+set xrange [5.62:83.38]
 unset logscale x
 set xtics 10
 set format x '%g'
@@ -53,7 +53,7 @@ set ytics nomirror
 set y2tics ('1' 1.000000, '2' 1.414214, '4' 2.000000, '6' 2.449490, '9' 3.000000, '12' 3.464102, '16' 4.000000, '20' 4.472136, '25' 5.000000)
 set key maxcols 2
 set arrow from graph 0,first 1.81659 to graph 1,first 1.81659 nohead lw 1.5 dt 4 lc rgb '#555555'
-plot 'p1-fig3.dat' index 0 using 1:2:3:4 with yerrorlines lw 1.3 ps 1.2 pt 9 lc rgb '#009E73' title 'convection, random', 'p1-fig3.dat' index 1 using 1:2:3:4 with vectors head filled lw 1.5 lc rgb '#009E73' notitle, 'p1-fig3.dat' index 2 using 1:2:3:4 with yerrorlines lw 1.3 ps 1.2 pt 7 lc rgb '#0072B2' title 'convection, crystal', 'p1-fig3.dat' index 3 using 1:2:3:4 with vectors head filled lw 1.5 lc rgb '#0072B2' notitle, 'p1-fig3.dat' index 4 using 1:2:3:4 with yerrorlines lw 1.3 ps 1.2 pt 8 lc rgb '#009E73' title 'bouncing, random', 'p1-fig3.dat' index 5 using 1:2:3:4 with vectors head filled lw 1.5 lc rgb '#009E73' notitle, 'p1-fig3.dat' index 6 using 1:2:3:4 with yerrorlines lw 1.3 ps 1.2 pt 6 lc rgb '#0072B2' title 'bouncing, crystal', 'p1-fig3.dat' index 7 using 1:2:3:4 with vectors head filled lw 1.5 lc rgb '#0072B2' notitle, keyentry with lines lw 1.5 dt 4 lc rgb '#555555' title 'paper: K_m = 3.3'
+plot 'p1-fig3.dat' index 0 using 1:2:3:4 with yerrorlines lw 1.3 ps 1.2 pt 9 lc rgb '#009E73' title 'convection, random', 'p1-fig3.dat' index 1 using 1:2:3:4 with vectors head filled lw 1.5 lc rgb '#009E73' notitle, 'p1-fig3.dat' index 2 using 1:2:3:4 with yerrorlines lw 1.3 ps 1.2 pt 7 lc rgb '#0072B2' title 'convection, crystal', 'p1-fig3.dat' index 3 using 1:2:3:4 with vectors head filled lw 1.5 lc rgb '#0072B2' notitle, 'p1-fig3.dat' index 4 using 1:2:3:4 with yerrorlines lw 1.3 ps 1.2 pt 8 lc rgb '#009E73' title 'bouncing, random', 'p1-fig3.dat' index 5 using 1:2:3:4 with vectors head filled lw 1.5 lc rgb '#009E73' notitle, 'p1-fig3.dat' index 6 using 1:2:3:4 with yerrorlines lw 1.3 ps 1.2 pt 6 lc rgb '#0072B2' title 'bouncing, crystal', 'p1-fig3.dat' index 7 using 1:2:3:4 with vectors head filled lw 1.5 lc rgb '#0072B2' notitle, 'p1-fig3.dat' index 8 using 1:2:3:4 with yerrorbars lw 1.3 ps 0.8 pt 11 lc rgb '#009E73' title 'random, none at rest', 'p1-fig3.dat' index 9 using 1:2:3:4 with vectors head filled lw 1.5 lc rgb '#009E73' notitle, keyentry with lines lw 1.5 dt 4 lc rgb '#555555' title 'paper: K_m = 3.3'
 unset output
 reset
 }

@@ -43,7 +43,7 @@ unset logscale x
 set xtics 2
 set format x '%g'
 set ylabel 'T_z(z)/(m g d)'
-set yrange [-0.155357545:4.03929618]
+set yrange [-0.150746826:3.91941748]
 unset logscale y
 set ytics 1
 set format y '%g'

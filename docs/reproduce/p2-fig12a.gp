@@ -43,7 +43,7 @@ unset logscale x
 set xtics 2
 set format x '%g'
 set ylabel 'T_z(z)/(m g d)'
-set yrange [-0.308828311:8.0295361]
+set yrange [-0.301321068:7.83434776]
 unset logscale y
 set ytics 2
 set format y '%g'

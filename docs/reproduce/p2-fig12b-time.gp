@@ -38,12 +38,12 @@ set linetype 6 lc rgb '#56B4E9' pt 15 ps 0.9 lw 1.3
 set linetype 7 lc rgb '#000000' pt 6 ps 0.9 lw 1.3
 set linetype 8 lc rgb '#9A9A9A' pt 4 ps 0.9 lw 1.3
 set xlabel 'z/d'
-set xrange [-1.1:28.6]
+set xrange [-1.06:27.56]
 unset logscale x
 set xtics 5
 set format x '%g'
 set ylabel 'T_z(z)/(m g d)'
-set yrange [-0.72896575:18.9531095]
+set yrange [-0.753657672:19.5950995]
 unset logscale y
 set ytics 5
 set format y '%g'

@@ -38,12 +38,12 @@ set linetype 6 lc rgb '#56B4E9' pt 15 ps 0.9 lw 1.3
 set linetype 7 lc rgb '#000000' pt 6 ps 0.9 lw 1.3
 set linetype 8 lc rgb '#9A9A9A' pt 4 ps 0.9 lw 1.3
 set xlabel 'z/d'
-set xrange [-1.9:49.4]
+set xrange [-2.1:54.6]
 unset logscale x
 set xtics 10
 set format x '%g'
 set ylabel 'T_z(z)/(m g d)'
-set yrange [-3.39118542:88.1708208]
+set yrange [-3.27724194:85.2082905]
 unset logscale y
 set ytics 20
 set format y '%g'

@@ -38,12 +38,12 @@ set linetype 6 lc rgb '#56B4E9' pt 15 ps 0.9 lw 1.3
 set linetype 7 lc rgb '#000000' pt 6 ps 0.9 lw 1.3
 set linetype 8 lc rgb '#9A9A9A' pt 4 ps 0.9 lw 1.3
 set xlabel 'z/d'
-set xrange [-2.82:73.32]
+set xrange [-2.9:75.4]
 unset logscale x
 set xtics 10
 set format x '%g'
 set ylabel 'T_z(z)/(m g d)'
-set yrange [-4.50810673:117.210775]
+set yrange [-4.42803971:115.129032]
 unset logscale y
 set ytics 20
 set format y '%g'

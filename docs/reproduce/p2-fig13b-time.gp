@@ -38,12 +38,12 @@ set linetype 6 lc rgb '#56B4E9' pt 15 ps 0.9 lw 1.3
 set linetype 7 lc rgb '#000000' pt 6 ps 0.9 lw 1.3
 set linetype 8 lc rgb '#9A9A9A' pt 4 ps 0.9 lw 1.3
 set xlabel 'z/d'
-set xrange [-3.18:82.68]
+set xrange [-3.58:93.08]
 unset logscale x
 set xtics 20
 set format x '%g'
 set ylabel 'T_z(z)/(m g d)'
-set yrange [-2.48130094:64.5138244]
+set yrange [-2.43860704:63.4037829]
 unset logscale y
 set ytics 10
 set format y '%g'

@@ -42,7 +42,7 @@ set xlabel 'x/d'
 set ylabel 'z/d'
 set xrange [0:10]
 set yrange [-1:12]
-set title '{/:Bold (c)} 2D smooth, W = 2.74, the paper’s W_f'
+set title '{/:Bold (c)} 2D smooth, W = 2.74, for the paper’s W = W_f'
 set style fill solid border lc rgb '#444444'
 set cbrange [0:4.3]
 set cblabel 'speed about the centre of mass/V_p'
