@@ -259,7 +259,8 @@ std::string twin_scene(const std::string& base, const std::string& base_name,
   Config measured =
       Config::from_text(stated + (scale.empty() ? "" : "[scale]\n" + scale), "the cell description");
   scene.yield_to(measured, "drive", {"amplitude", "omega", "frequency", "gamma", "k_m", "peak_velocity"});
-  scene.yield_to(measured, "start", {"kind", "from", "frame", "velocity_scale", "fraction"});
+  scene.yield_to(measured, "start",
+                 {"kind", "from", "frame", "velocity_scale", "fraction", "height", "fall_speed"});
   scene.overlay(std::move(measured));
   sim::assign(scene, assignments);
   return resolved_text(scene);

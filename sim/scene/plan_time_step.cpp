@@ -61,9 +61,9 @@ std::vector<BeadScale> fastest(const std::vector<BeadScale>& all) {
 }
 
 /// Largest speed of a bead at the start: those of a file state theirs, drawn ones have components up to
-/// start.velocity_scale.
+/// start.velocity_scale, next to start.fall_speed.
 double start_speed(const Scene& s, const std::vector<Bead>& beads) {
-  double largest = start_row(s.start).draws ? std::numbers::sqrt2 * s.velocity_scale : 0;
+  double largest = start_row(s.start).draws ? std::numbers::sqrt2 * s.velocity_scale + s.fall_speed : 0;
   if (start_row(s.start).from_file)
     for (const Bead& b : beads) largest = std::max(largest, std::hypot(b.vx, b.vy, b.vz));
   return largest;

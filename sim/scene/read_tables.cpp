@@ -338,8 +338,9 @@ void read_start(const Section& s, const std::filesystem::path& folder, Scene& sc
   scene.frame = static_cast<std::size_t>(s.integer_in("frame", 0, std::int64_t{1} << 40).value_or(0));
   scene.perturbation = s.number_in("perturbation", 0, 0.01).value_or(scene.perturbation);
   scene.velocity_scale = s.number_in("velocity_scale", 0, 1e6).value_or(scene.velocity_scale);
-  // Random placement becomes slow near its limit, 0.547 of the area in 2D and 0.38 of the volume in 3D.
-  scene.fraction = s.number_in("fraction", 1e-3, scene.dimension == 2 ? 0.5 : 0.35);
+  scene.fraction = s.number_in("fraction", 1e-3, largest_fraction(scene.dimension));
+  scene.column_height = s.number_in("height", 0, 1e6, true);
+  scene.fall_speed = s.number_in("fall_speed", 0, 1e6).value_or(scene.fall_speed);
   scene.rest_energy = s.number_in("rest_energy", 0, std::nullopt, true).value_or(scene.rest_energy);
   scene.settle_limit = s.number_in("settle_limit", 0, 1e6).value_or(scene.settle_limit);
   scene.relax = s.boolean("relax").value_or(scene.relax);
@@ -374,10 +375,15 @@ void read_start(const Section& s, const std::filesystem::path& folder, Scene& sc
     void_keys.refuse(s, {"velocity_scale"},
                      fmt::format("sets the speeds of a random start, but start.kind is not {}.",
                                  only_for(&StartRow::draws)));
-    void_keys.refuse(s, {"fraction"},
+    void_keys.refuse(s, {"fall_speed"},
+                     fmt::format("sets the speed of a random start, but start.kind is not {}.",
+                                 only_for(&StartRow::draws)));
+    void_keys.refuse(s, {"fraction", "height"},
                      fmt::format("sets the column of a random start, but start.kind is not {}.",
                                  only_for(&StartRow::draws)));
   }
+  if (scene.fraction && scene.column_height)
+    void_keys.refuse(s, {"height"}, "sets the column of a random start, and so does start.fraction.");
 }
 
 void refuse_void_spread(const Section& beads, const Scene& scene, VoidKeys& void_keys) {

@@ -127,9 +127,11 @@ struct Scene {           // NOLINT(clang-analyzer-optin.performance.Padding): in
   /// Random start: the share of the column's area (3D: volume) that the beads take. It decides the height
   /// from which they fall. Absent: 0.4 (3D: 0.25).
   std::optional<double> fraction;
-  double rest_energy = 1e-12;  ///< kinetic energy per bead below which the bed is at rest, m g sigma
-  double settle_limit = 100;   ///< longest settling time, t0
-  bool relax = false;          ///< overlaps of any depth are removed first
+  std::optional<double> column_height;  ///< random start: height of the column instead of the share, sigma
+  double fall_speed = 0;                ///< random start: downward speed of every bead at the start, sigma/t0
+  double rest_energy = 1e-12;           ///< kinetic energy per bead below which the bed is at rest, m g sigma
+  double settle_limit = 100;            ///< longest settling time, t0
+  bool relax = false;                   ///< overlaps of any depth are removed first
 
   // Time
   double steps_per_contact = kDefaultIntegrator.steps_per_contact;

@@ -24,19 +24,37 @@ double size_of_all(const Scene& scene, const std::vector<double>& radii) {
   return flat ? in_beads * std::numbers::pi * r * r : in_beads * 4 / 3 * std::numbers::pi * r * r * r;
 }
 
-/// Height of the column of which the beads take the share Scene::fraction, but at least six radii.
-/// \throws ConfigError if a stated share has no effect or does not fit below the ceiling
-double column_height(const Scene& scene, const std::vector<double>& radii) {
+/// Height of the column of which the beads take a share, but at least six radii.
+double height_at(const Scene& scene, const std::vector<double>& radii, double share) {
   const double filled = size_of_all(scene, radii) /
-                        (scene.dimension == 2 ? scene.fraction.value_or(0.4) * scene.width
-                                              : scene.fraction.value_or(0.25) * scene.width * scene.depth);
-  const double needed =
-      std::max({6 * scene.radius, filled, scene.intruder ? scene.intruder->z + scene.intruder->radius : 0.0});
+                        (scene.dimension == 2 ? share * scene.width : share * scene.width * scene.depth);
+  return std::max(
+      {6 * scene.radius, filled, scene.intruder ? scene.intruder->z + scene.intruder->radius : 0.0});
+}
+
+/// Height of the column: Scene::column_height, or that of which the beads take the share Scene::fraction.
+/// \throws ConfigError if a stated height or share has no effect, does not fit below the ceiling, or leaves
+/// the beads too little room
+double column_height(const Scene& scene, const std::vector<double>& radii) {
   const double ceiling = ceiling_of(scene);
   const bool fills_cell = scene.g() == 0 && std::isfinite(ceiling);
-  if (scene.fraction && fills_cell)
-    throw ConfigError(scene.where("start.fraction"),
-                      "has no effect: without gravity the beads are placed in the whole cell.");
+  for (const auto& [key, stated] : {std::pair{"start.fraction", scene.fraction.has_value()},
+                                    {"start.height", scene.column_height.has_value()}})
+    if (stated && fills_cell)
+      throw ConfigError(scene.where(key),
+                        "has no effect: without gravity the beads are placed in the whole cell.");
+  if (scene.column_height) {
+    const double least = height_at(scene, radii, largest_fraction(scene.dimension));
+    if (*scene.column_height < least || *scene.column_height > ceiling)
+      throw ConfigError(
+          scene.where("start.height"),
+          *scene.column_height < least
+              ? fmt::format("is {:g} sigma, but the beads need a column of {:.4g} sigma.",
+                            *scene.column_height, least)
+              : fmt::format("is {:g} sigma, but the cell ends at {:.4g}.", *scene.column_height, ceiling));
+    return *scene.column_height;
+  }
+  const double needed = height_at(scene, radii, scene.fraction.value_or(scene.dimension == 2 ? 0.4 : 0.25));
   if (scene.fraction && needed > ceiling)
     throw ConfigError(
         scene.where("start.fraction"),
@@ -96,7 +114,7 @@ Start random_deposit(const Scene& scene, Progress& progress) {
         Bead& b = start.beads[i] = bead_at(scene, radius, r);
         b.vx = scene.velocity_scale * (2 * uniform(engine) - 1);
         if (scene.dimension == 3) b.vy = scene.velocity_scale * (2 * uniform(engine) - 1);
-        b.vz = scene.velocity_scale * (2 * uniform(engine) - 1);
+        b.vz = scene.velocity_scale * (2 * uniform(engine) - 1) - scene.fall_speed;
         grid.insert(static_cast<std::int32_t>(i), r, radius);
       }
     }

@@ -125,10 +125,12 @@ TEST(Scene, TheStepFollowsTheSpeedsOfTheStart) {
 
 TEST(Scene, NumbersOutOfRangeAreRefused) {
   for (const char* key :
-       {"cell.width", "cell.height", "cell.gravity", "cell.tilt", "cell.side_tilt", "cell.plate_drag",
-        "beads.radius", "beads.mass", "beads.layers", "drive.amplitude", "drive.omega", "drive.ramp_cycles",
-        "start.perturbation", "start.velocity_scale", "start.fraction", "start.rest_energy",
-        "start.settle_limit", "time.steps_per_contact", "contact.overlap_bound"})
+       {"cell.width",           "cell.height",          "cell.gravity",       "cell.tilt",
+        "cell.side_tilt",       "cell.plate_drag",      "beads.radius",       "beads.mass",
+        "beads.layers",         "drive.amplitude",      "drive.omega",        "drive.ramp_cycles",
+        "start.perturbation",   "start.velocity_scale", "start.fraction",     "start.height",
+        "start.fall_speed",     "start.rest_energy",    "start.settle_limit", "time.steps_per_contact",
+        "contact.overlap_bound"})
     for (const char* value : {"nan", "inf", "-inf", "\"one\"", "-1e9", "true"}) {
       const std::string said = complaint(kGood, {std::string(key) + "=" + value});
       EXPECT_NE(said.find(key), std::string::npos) << key << " = " << value << ": " << said;
@@ -446,6 +448,12 @@ TEST(Contact, APresetsKeysGiveWayAndAreNamed) {
 TEST(Scene, KeysOfAnotherStartOrCellAreRefused) {
   expect_complaint(kGood + "[start]\nfraction = 0.1\n",
                    "start.fraction: sets the column of a random start, but start.kind is not");
+  expect_complaint(kGood + "[start]\nheight = 60.0\n",
+                   "start.height: sets the column of a random start, but start.kind is not");
+  expect_complaint(kGood + "[start]\nfall_speed = 2.0\n",
+                   "start.fall_speed: sets the speed of a random start, but start.kind is not");
+  expect_complaint(kGood + "[start]\nkind = \"random\"\nfraction = 0.1\nheight = 60.0\n",
+                   "start.height: sets the column of a random start, and so does start.fraction");
   expect_complaint(kGood + "[start]\nvelocity_scale = 2.0\n",
                    "start.velocity_scale: sets the speeds of a random start, but start.kind is not");
   expect_complaint(kGood + "[cell]\ngravity = 0.0\ntilt = 3.0\n", "cell.tilt: turns gravity");

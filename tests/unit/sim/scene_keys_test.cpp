@@ -35,10 +35,11 @@ std::string told(const Assignments& assignments) {
   for (const auto& [cycle, factor] : s.envelope.points) tell(cycle, factor);
   for (const Harmonic& harmonic : s.drive.harmonics) tell(harmonic.amplitude, harmonic.phase);
   tell(static_cast<int>(s.start), s.seed, s.from.string(), s.frame, s.in_motion, s.perturbation,
-       s.velocity_scale, s.rest_energy, s.settle_limit, s.relax, s.steps_per_contact, s.allow_unstable_step,
-       s.integrator, static_cast<int>(s.stepping), s.discard, s.cycles, s.phases,
+       s.velocity_scale, s.fall_speed, s.rest_energy, s.settle_limit, s.relax, s.steps_per_contact,
+       s.allow_unstable_step, s.integrator, static_cast<int>(s.stepping), s.discard, s.cycles, s.phases,
        s.springs.value_or(s.contacts), s.contacts, s.rotation, s.history);
   number(s.fraction);
+  number(s.column_height);
   number(s.samples);
   if (s.until) tell(s.until->quantity, s.until->relative, s.until->absolute);
   number(s.scale.sigma_m);

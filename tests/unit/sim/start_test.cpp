@@ -2,6 +2,7 @@
 
 #include "sim/start/start.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -294,6 +295,41 @@ TEST(Random, TheFractionSetsTheColumn) {
                                      "cell.height=30", "cell.lid=wall"}));
       },
       "start.fraction", "needs a column of 157.1 sigma, but the cell ends at 30");
+}
+
+// The column of which the beads take a tenth, by its height.
+TEST(Random, TheHeightSetsTheColumn) {
+  const double tall = 400 * std::numbers::pi / 4 / (0.1 * 20);
+  const auto column = [](const std::string& key) {
+    return scene(kFlat, {"beads.count=400", "start.kind=random", key});
+  };
+  const auto by_height = random_deposit(column(fmt::format("start.height={:.17g}", tall))).beads,
+             by_share = random_deposit(column("start.fraction=0.1")).beads;
+  for (std::size_t i = 0; i < by_height.size(); ++i) EXPECT_NEAR(by_height[i].z, by_share[i].z, 1e-9);
+  // At most half of the area: 400 pi/4 / (0.5 * 20).
+  expect_refusal<ConfigError>([&] { random_deposit(column("start.height=31")); }, "start.height",
+                              "is 31 sigma, but the beads need a column of 31.42 sigma");
+  expect_refusal<ConfigError>(
+      [&] {
+        random_deposit(scene(kFlat, {"beads.count=400", "start.kind=random", "start.height=60",
+                                     "cell.height=50", "cell.lid=wall"}));
+      },
+      "start.height", "is 60 sigma, but the cell ends at 50");
+}
+
+// Every bead is faster by the speed of fall, so that it lands on the bottom with sqrt(v^2 + 2 g h).
+TEST(Random, BeadsFallWithTheStatedSpeed) {
+  const auto dropped = [](const char* speed) {
+    return random_deposit(scene(kFlat, {"beads.count=50", "start.kind=random", "start.height=200",
+                                        std::string("start.fall_speed=") + speed}))
+        .beads;
+  };
+  const auto slow = dropped("0"), fast = dropped("3");
+  for (std::size_t i = 0; i < slow.size(); ++i) {
+    EXPECT_EQ(centre_of(fast[i]), centre_of(slow[i]));
+    EXPECT_EQ(fast[i].vx, slow[i].vx);
+    EXPECT_NEAR(fast[i].vz, slow[i].vz - 3, 1e-15);
+  }
 }
 
 // With these seeds the first beads lie so that the last find no room.
