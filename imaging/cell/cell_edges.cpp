@@ -217,13 +217,14 @@ void leave_corners_out(CellEdges& edges, double reach) {
       y.push_back(edges.plate[left ? i : edges.plate.size() - 1 - i].at.y_px);
     return median(std::move(y));
   };
-  const double left = lowest(edges.left), right = lowest(edges.right), row_left = row_beside(true),
-               row_right = row_beside(false);
   // The median of an absent edge is NaN, and comparisons with NaN are false: no point is removed.
-  std::erase_if(edges.plate,
-                [&](const EdgePoint& p) { return p.at.x_px < left + reach || p.at.x_px > right - reach; });
+  // The walls first: where a plate joins both, the rows of the plate show the far side of the other wall.
+  const double row_left = row_beside(true), row_right = row_beside(false);
   std::erase_if(edges.left, [&](const EdgePoint& p) { return p.at.y_px > row_left - reach; });
   std::erase_if(edges.right, [&](const EdgePoint& p) { return p.at.y_px > row_right - reach; });
+  const double left = lowest(edges.left), right = lowest(edges.right);
+  std::erase_if(edges.plate,
+                [&](const EdgePoint& p) { return p.at.x_px < left + reach || p.at.x_px > right - reach; });
 }
 
 /// Level of the background under front light, if it is black and clipped at zero: it is then exactly zero.

@@ -37,6 +37,7 @@ struct Cell {
   double diameter = 22, thickness = 12, tilt_degrees = 0, plate_px = 0;
   bool round = false, bright = false;
   bool through_border = false;  // walls run out of the picture, below
+  bool one_frame = false;       // the plate joins the walls, which end at its lower side
   double light = kLight, dark = 20;
 };
 
@@ -59,11 +60,12 @@ Scene scene_of(const Cell& cell) {
   };
   const double cap = cell.round ? 0.5 * t : 0;
   Scene scene;
+  const double foot = cell.through_border ? side + t : cell.one_frame ? plate + t : side - 12 - cap;
   for (const double x : {left - 0.5 * t, left + width + 0.5 * t})
-    scene.bars.push_back(
-        {turned(x, 14 + cap), turned(x, cell.through_border ? side + t : side - 12 - cap), t, cell.round});
-  scene.bars.push_back({turned(left + 1 + cap, plate + 0.5 * t),
-                        turned(left + width - 1 - cap, plate + 0.5 * t), t, cell.round});
+    scene.bars.push_back({turned(x, 14 + cap), turned(x, foot), t, cell.round});
+  const double inset = cell.one_frame ? -t : 1 + cap;
+  scene.bars.push_back(
+      {turned(left + inset, plate + 0.5 * t), turned(left + width - inset, plate + 0.5 * t), t, cell.round});
   Places places;
   for (int row = 0; row < kRows; ++row)
     for (int k = 0; k < kColumns; ++k) {
@@ -162,6 +164,23 @@ TEST(BarsOnly, WallsThroughTheLowerBorderHaveEdges) {
     EXPECT_GE(edges.left.size(), 40U) << tilt;
     EXPECT_GE(edges.right.size(), 40U) << tilt;
     EXPECT_GE(edges.plate.size(), 40U) << tilt;
+  }
+}
+
+// Walls and plate of one frame: the rows of the plate show no wall, only the far side of the other one.
+TEST(BarsOnly, APlateThatJoinsTheWallsHasAnEdge) {
+  for (const double tilt : {0.0, 0.4, -2.0}) {
+    const Scene scene = scene_of({.thickness = 18, .tilt_degrees = tilt, .one_frame = true});
+    const imaging::CellEdges edges = imaging::find_cell_edges(scene.exhibit.picture, {.diameter_px = 22});
+    EXPECT_GE(edges.left.size(), 40U) << tilt;
+    EXPECT_GE(edges.right.size(), 40U) << tilt;
+    ASSERT_GE(edges.plate.size(), 40U) << tilt;
+    const Bar& plate = scene.bars.back();
+    for (const imaging::EdgePoint& p : edges.plate) {
+      const cv::Point2d axis = (plate.b - plate.a) / cv::norm(plate.b - plate.a),
+                        from = cv::Point2d(p.at.x_px, p.at.y_px) - plate.a;
+      EXPECT_NEAR(axis.y * from.x - axis.x * from.y, 0.5 * plate.thickness, 0.5) << tilt;
+    }
   }
 }
 
