@@ -1,6 +1,7 @@
 #include "analysis/motion/phase_thresholds.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,12 +16,19 @@
 namespace twincell::analysis {
 namespace {
 
+constexpr double kRmsOfSine = 1 / std::numbers::sqrt2;
+
 constexpr NamedResult kResults[] = {
     {"s_k"},
-    {.name = "s_b", .pooling = Pooling::root_mean_square, .range = Range::not_negative, .main = true},
-    {"s_b_variance", Pooling::root_mean_square},
-    {"s_b_about_rest", Pooling::root_mean_square},
-    {"s_b_as_printed", Pooling::root_mean_square},
+    {.name = "s_b",
+     .pooling = Pooling::root_mean_square,
+     .range = Range::not_negative,
+     .main = true,
+     .above_plate = kRmsOfSine},
+    {.name = "s_b_variance", .pooling = Pooling::root_mean_square, .above_plate = kRmsOfSine},
+    // The height at rest is that of one frame, which the plate's error shifts as much as any other.
+    {.name = "s_b_about_rest", .pooling = Pooling::root_mean_square, .above_plate = 1},
+    {.name = "s_b_as_printed", .pooling = Pooling::root_mean_square, .above_plate = kRmsOfSine},
     {.name = "half_pixel", .range = Range::not_negative, .may_repeat = true},
     {"s_b_noise"},
     {"s_j_noise"},

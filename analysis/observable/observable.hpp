@@ -210,6 +210,9 @@ struct NamedResult {
   bool filling = false;
   /// The power of the peak velocity of the drive over which it is: 2 of T_bar = T/(m V_p^2).
   int over_peak_velocity = 0;
+  /// The error of a height above the plate, whose amplitude A is wrong by dA: this times dA. The plate is
+  /// then off by dA sin(omega t), whose rms over a cycle is dA/sqrt(2).
+  double above_plate = 0;
 };
 
 /// One observable: its results and its factory. NAME.cpp defines NAME_observable, the list in observables.cpp

@@ -102,6 +102,15 @@ std::optional<double> error_by(std::optional<double> Run::*relative, double powe
   return std::abs(power * value) * sum / static_cast<double>(match.experiments.size());
 }
 
+/// Error of a number of the experiments by that of the amplitude of the drive.
+std::optional<double> error_by_drive(const Result& r, const std::vector<Run>& runs, const Match& match,
+                                     double value) {
+  const Run& experiment = runs[match.experiments.front()];
+  const double above_plate = named_result(r.name).above_plate, amplitude = experiment.k_m / experiment.gamma;
+  return above_plate > 0 ? error_by(&Run::amplitude_error, above_plate, runs, match, amplitude)
+                         : error_by(&Run::amplitude_error, amplitude_power(r), runs, match, value);
+}
+
 /// Sets the spread between seeds of one start, and the difference between starts.
 void compare_simulations(const std::vector<Run>& runs, const Match& match, Difference& d) {
   std::map<std::string, std::vector<double>> of_start;
@@ -322,7 +331,7 @@ std::vector<Difference> find_differences(const std::vector<Run>& runs, const std
       d.tracers = spread_over_lines(checks, match, r.name);
       d.scale = error_by(&Run::scale_error, length_power(r, runs[match.experiments.front()].box.dimension),
                          runs, match, experiment->value);
-      d.drive = error_by(&Run::amplitude_error, amplitude_power(r), runs, match, experiment->value);
+      d.drive = error_by_drive(r, runs, match, experiment->value);
       compare_simulations(runs, match, d);
       // The scatter between seeds contains that within a simulation.
       if (!experiment->error && (other_error || d.seeds || d.tracers))

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "tests/support/rigid_bed.hpp"
 #include "trajectory/trajectory.hpp"
@@ -154,6 +155,20 @@ TEST(Differences, ErrorsOfScaleAndDriveAreCarriedIntoNumbersWithoutUnit) {
   EXPECT_FALSE(only(runs).drive);
   EXPECT_NEAR(runs[0].drive_error().value(), std::hypot(1e-3, 2e-3), 1e-12);
   EXPECT_FALSE(runs[1].drive_error());
+}
+
+// Beads that rest on a plate of amplitude 0.5, which is wrong by 0.001, seem to bounce by the rms of
+// 0.001 sin(omega t), and by more about the height of a single frame.
+TEST(Differences, TheErrorOfTheAmplitudeIsPartOfTheErrorOfAHeightAboveThePlate) {
+  Runs runs = {run(Side::experiment, 7e-4, 1e-5), run(Side::simulation, 1e-5, 1e-6)};
+  runs[0].gamma = runs[1].gamma = 0.8;
+  runs[0].k_m = 0.4;
+  EXPECT_TRUE(only(runs).is_real());
+  runs[0].amplitude_error = 2e-3;
+  EXPECT_NEAR(only(runs).drive.value(), 1e-3 / std::numbers::sqrt2, 1e-12);
+  EXPECT_FALSE(only(runs).is_real());
+  for (auto& r : runs) r.results[0].name = "s_b_about_rest";
+  EXPECT_NEAR(only(runs).drive.value(), 1e-3, 1e-12);
 }
 
 // The scale says nothing of the scatter of the numbers.
