@@ -15,6 +15,30 @@ namespace twincell {
 namespace {
 /// Distance of two centres, in diameters of the smallest bead, below which their overlap is not elastic.
 constexpr double kDeepOverlap = 0.8;
+
+/// How many beads of a frame moved by more than half a bead diameter to where another bead was in the frame
+/// before, whatever all of them moved by. A bead in motion rarely meets such a place.
+std::size_t exchanged_places(const Frame& before, const Frame& now) {
+  constexpr double kMoved = 0.5, kThere = 0.15;  // sigma
+  constexpr double kMinShare = 0.3;  // of the beads, which have to move before places are searched
+  std::vector<Vec3> from, moves;
+  Vec3 common = Vec3::Zero();  // an exchange leaves the mean where it is
+  for (std::size_t i = 0; i < std::min(before.position.size(), now.position.size()); ++i) {
+    if (!before.present(i) || !now.present(i)) continue;
+    from.push_back(before.position[i]);
+    moves.emplace_back(now.position[i] - before.position[i]);
+    common += moves.back();
+  }
+  if (from.empty()) return 0;
+  common /= static_cast<double>(from.size());
+  std::vector<Vec3> places = from;
+  for (std::size_t k = 0; k < from.size(); ++k)
+    if ((moves[k] - common).norm() > kMoved) places.push_back(from[k] + moves[k] - common);
+  if (static_cast<double>(places.size() - from.size()) < kMinShare * static_cast<double>(from.size()))
+    return 0;
+  return listed_again(places, kThere) - listed_again(from, kThere);
+}
+
 }  // namespace
 
 void TrajectoryDoubts::watch_plate(const Frame& frame) {
@@ -28,6 +52,12 @@ void TrajectoryDoubts::watch_plate(const Frame& frame) {
 
 void TrajectoryDoubts::watch_steps(const Frame& frame) {
   constexpr double kFarthest = 10, kOfMedian = 50;  // sigma; median step of the frame
+  constexpr double kExchanged = 0.5;                // of the beads
+  if (const std::size_t exchanged = exchanged_places(before_, frame);
+      static_cast<double>(exchanged) > kExchanged * static_cast<double>(frame.n_present())) {
+    if (exchanges_++ == 0) exchanged_ = exchanged, exchange_ = {before_.step, frame.step};
+    return;
+  }
   const double time = frame.time - before_.time;
   std::vector<double> steps;
   std::vector<std::size_t> beads;
@@ -130,16 +160,21 @@ std::vector<std::string> TrajectoryDoubts::sentences() const {
   std::ranges::move(doubts_of_velocities(), std::back_inserter(doubts));
   constexpr double kMaxShareDeep = 0.2;
   if (static_cast<double>(deep_) > kMaxShareDeep * static_cast<double>(spaced_))
-    doubts.push_back(
-        fmt::format("{:.3g} % of the beads overlap an earlier one by more than {:g} diameters: are the radii "
-                    "diameters, or "
-                    "is the unit of length wrong?",
-                    100 * static_cast<double>(deep_) / static_cast<double>(spaced_), 1 - kDeepOverlap));
+    doubts.push_back(fmt::format(
+        "{:.3g} % of the beads overlap an earlier one by more than {:g} diameters: the radii may be "
+        "diameters, or the unit of length is wrong",
+        100 * static_cast<double>(deep_) / static_cast<double>(spaced_), 1 - kDeepOverlap));
   if (doubled_ > 0)
     doubts.push_back(
         fmt::format("{}, the first in the frame of step {}, {} closer than {:g} diameters to another bead: "
-                    "are beads listed twice?",
+                    "beads may be listed twice",
                     plural(doubled_, "bead"), doubled_step_, doubled_ == 1 ? "lies" : "lie", kSameBead));
+  if (exchanges_ > 0)
+    doubts.push_back(fmt::format(
+        "between the frames of the steps {} and {}, {} take the places of others{}: the numbers of the beads "
+        "are those of a row of the file and not of a bead, or the links are wrong",
+        exchange_[0], exchange_[1], plural(exchanged_, "bead"),
+        exchanges_ > 1 ? fmt::format(", and so between {} pairs of frames", exchanges_) : ""));
   if (jumps_ > 0)
     doubts.push_back(fmt::format(
         "bead {} moves by {:.4g} bead diameters between the frames of the steps {} and {}{}, and the others "

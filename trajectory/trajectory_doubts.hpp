@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// Signs that the numbers of a trajectory mean something else than its reader believes: beads beneath the
-/// plate, velocities or radii that contradict the positions, single beads that jump, beads that are listed
-/// twice.
+/// plate, velocities or radii that contradict the positions, single beads that jump, beads that exchange
+/// their places, beads that are listed twice.
 
 #include <Eigen/Core>
 #include <array>
@@ -44,9 +44,12 @@ class TrajectoryDoubts {
   std::size_t jumps_ = 0, jumped_ = 0;  ///< steps that are jumps; the bead of the first one
   std::array<std::int64_t, 2> jump_{};  ///< the frames of the first one
   double jump_length_ = 0;              ///< sigma
-  std::size_t doubled_ = 0;             ///< beads at the place of another one
-  std::int64_t doubled_step_ = 0;       ///< of the first frame with one
-  std::size_t spaced_ = 0, deep_ = 0;   ///< beads, and those of them deep in an earlier one
+  std::size_t exchanges_ = 0;           ///< pairs of frames between which most beads exchange their places
+  std::size_t exchanged_ = 0;           ///< beads of the first such pair
+  std::array<std::int64_t, 2> exchange_{};  ///< its frames
+  std::size_t doubled_ = 0;                 ///< beads at the place of another one
+  std::int64_t doubled_step_ = 0;           ///< of the first frame with one
+  std::size_t spaced_ = 0, deep_ = 0;       ///< beads, and those of them deep in an earlier one
 };
 
 /// What is doubtful in the first `frames` frames of a trajectory, in sentences without a full stop.

@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
+#include <string>
 
 namespace twincell {
 namespace {
@@ -65,6 +67,51 @@ TEST(TrajectoryDoubts, RadiiThatAreDiameters) {
             std::string::npos)
       << doubts(riding_bed(20, 1, 1));
   EXPECT_EQ(doubts(riding_bed(20, 1, 0.55)), "");  // polydisperse beads, or measured ones
+}
+
+// The numbers of the beads are those of the rows of a table, whose order changes once.
+TEST(TrajectoryDoubts, BeadsThatExchangeTheirPlaces) {
+  const MemoryTrajectory bed = riding_bed(20, 1, 0.45);
+  MemoryTrajectory shuffled(bed.info());
+  Frame frame;
+  for (std::size_t f = 0; f < bed.n_frames(); ++f) {
+    bed.read(f, frame);
+    for (std::size_t i = 0; i < 50; ++i) {
+      const std::size_t row = f >= 25 ? (i * 7 + 3) % 50 : i;
+      const auto place = static_cast<double>(row * row);  // no lattice
+      frame.position[i] = bed.frames()[f].position[row] + 0.04 * Vec3(std::sin(place), 0, std::cos(place));
+    }
+    shuffled.append(frame);
+  }
+  const std::string said = doubts(shuffled);
+  EXPECT_NE(said.find("between the frames of the steps 24 and 25, 50 beads take the places of others: the "
+                      "numbers of the beads are those of a row"),
+            std::string::npos)
+      << said;
+  EXPECT_EQ(said.find("velocities say"), std::string::npos) << said;
+}
+
+// One row of a crystal that slips by a place in every frame, and a gas that flies far, keep their numbers.
+TEST(TrajectoryDoubts, MotionIsNoExchange) {
+  TrajectoryInfo info;
+  info.n_beads = 200;
+  info.box.upper = Vec3(40, 1, 40);
+  MemoryTrajectory slipping(info), flying(info);
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> place(0, 40);
+  for (int f = 0; f < 10; ++f) {
+    Frame row, gas;
+    row.step = gas.step = f;
+    row.time = gas.time = f;
+    for (int i = 0; i < 200; ++i) {
+      row.position.emplace_back(i % 20 + 0.5 + (i / 20 > 5 ? f : 0), 0, i / 20 + 0.5);
+      gas.position.emplace_back(place(random), 0, place(random));
+    }
+    slipping.append(row);
+    flying.append(gas);
+  }
+  EXPECT_EQ(doubts(slipping).find("take the places"), std::string::npos) << doubts(slipping);
+  EXPECT_EQ(doubts(flying).find("take the places"), std::string::npos) << doubts(flying);
 }
 
 TEST(TrajectoryDoubts, OnlyTheFramesThatAreAskedForAreRead) {
