@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -160,7 +161,8 @@ std::vector<twin::Twin> make_twins(const Common& common, const MatchOptions& o,
   std::vector<twin::Twin> twins;
   for (std::size_t i = 0; i < pairs.stacks.size(); ++i) {
     const auto add = [&] {
-      const twin::TwinOptions options = options_of(o, common, pairs.stacks[i], pairs.cells[i]);
+      twin::TwinOptions options = options_of(o, common, pairs.stacks[i], pairs.cells[i]);
+      options.stacks_of_cell = static_cast<std::size_t>(std::ranges::count(pairs.cells, pairs.cells[i]));
       twins.push_back(make_noted_twin(common, options, several ? folder / names[i] : folder));
     };
     several ? naming(pairs.stacks[i], add) : add();

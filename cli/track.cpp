@@ -168,7 +168,7 @@ void write_tracks(const TrackOptions& o, calibration::TrackedFilm& film, const i
   info.provenance_json = provenance.to_json();
   Stage writing(times, "writing", "frames");
   H5mdWriter writer(o.output, info);
-  imaging::BedInCell watched(writer, info, film.cell, film.stack.height_px);
+  imaging::BedInCell watched(writer, info, film.cell, film.stack.width_px, film.stack.height_px);
   imaging::write_trajectory(film.stack, film.plan, watched);
   writer.finish();
   if (const std::string left_out = film.plan.in_plate_note(); !left_out.empty()) note(common, left_out);

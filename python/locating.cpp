@@ -293,7 +293,7 @@ py::object track(const py::object& said, TrackCall call, const py::object& callb
   std::shared_ptr<Trajectory> trajectory;
   std::vector<std::string> doubts;
   const auto write = [&](TrajectorySink& sink) {
-    imaging::BedInCell watched(sink, film.plan.info, film.cell, film.stack.height_px);
+    imaging::BedInCell watched(sink, film.plan.info, film.cell, film.stack.width_px, film.stack.height_px);
     imaging::write_trajectory(film.stack, film.plan, watched);
     doubts = watched.doubts();
   };

@@ -169,9 +169,15 @@ imaging::CellDescription with_phases(imaging::CellDescription cell) {
 
 /// \throws ConfigError if the frames show another drive than the cell states
 void require_agreement(const calibration::DriveCheck& check, const TwinOptions& options) {
-  if (!check.disagreement.empty())
-    throw ConfigError({.file = options.cell_file(), .key = "drive"},
-                      check.disagreement + "; correct one of them, or use --trust-stated-drive.");
+  if (check.disagreement.empty()) return;
+  throw ConfigError(
+      {.file = options.cell_file(), .key = "drive"},
+      options.stacks_of_cell > 1 && check.by == "plate"
+          ? fmt::format(
+                "{}; the cell serves {} stacks: leave the strength of the drive out of it, so that "
+                "it is measured in each, or give each stack a cell of its own, as twincell new writes.",
+                check.disagreement, options.stacks_of_cell)
+          : check.disagreement + "; correct one of them, or use --trust-stated-drive.");
 }
 
 /// How the bed lies in the cell that is stated. \returns doubts, in sentences
@@ -180,7 +186,7 @@ std::vector<std::string> check_bed_in_cell(const calibration::TrackedFilm& film,
   struct Nowhere : TrajectorySink {
     void append(const Frame& /*frame*/) override {}
   } nowhere;
-  imaging::BedInCell watched(nowhere, film.plan.info, film.cell, film.stack.height_px);
+  imaging::BedInCell watched(nowhere, film.plan.info, film.cell, film.stack.width_px, film.stack.height_px);
   imaging::write_trajectory(film.stack, film.plan, watched);
   // A part of the picture need not show the beads at the walls.
   const imaging::LocatingRequest& part = options.film.locating;

@@ -29,6 +29,7 @@ struct TwinOptions {
   /// bead is shifted at random, with the simulation's own seed, by the uncertainty of the measured positions.
   int twins = 3;
   bool trust_stated_cell = false;  ///< do not refuse a cell that the bed does not fill
+  std::size_t stacks_of_cell = 1;  ///< number of stacks that the cell file serves
   std::int64_t discard = 0;        ///< cycles that the comparison will leave out of both sides
 
   /// CELL.toml of the stack.

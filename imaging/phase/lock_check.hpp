@@ -23,6 +23,7 @@ struct LockEvidence {
   /// [frames] as RepeatedFrames::repeats, empty if no frame is repeated. The checks here take evidence
   /// without repeated frames (phases_of_repeated_frames.hpp).
   std::vector<std::uint8_t> repeats;
+  std::string copied;  ///< as RepeatedFrames::copied
 };
 
 /// The phases of a lock, checked against plate and time stamps. PhaseTable::checked_by states the witness; if

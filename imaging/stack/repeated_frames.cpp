@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "core/median.hpp"
 
@@ -59,6 +61,33 @@ std::vector<std::uint8_t> RepeatedFrames::repeats() const {
                           changes_[first] >= least && changes_[last + 1] >= least);
   }
   return certain ? repeats : std::vector<std::uint8_t>{};
+}
+
+std::string RepeatedFrames::copied() const {
+  constexpr std::size_t kFewest = 8, kFewestPictures = 3, kPeriods = 3;
+  const std::size_t n = hashes_.size();
+  std::unordered_map<std::uint64_t, std::size_t> seen;  // the last frame with these pixels
+  std::size_t first = 0, distance = 0, longest = 0, longest_first = 0, longest_distance = 0;
+  std::unordered_set<std::uint64_t> pictures;
+  for (std::size_t f = 0; f < n; ++f) {
+    const auto before = seen.find(hashes_[f]);
+    const std::size_t back = before == seen.end() ? 0 : f - before->second;
+    if (back != distance) first = f, distance = back, pictures.clear();
+    pictures.insert(hashes_[f]);
+    seen[hashes_[f]] = f;
+    const std::size_t length = f + 1 - first;
+    if (distance > 1 && length > longest && pictures.size() >= kFewestPictures)
+      longest = length, longest_first = first, longest_distance = distance;
+  }
+  const bool periodic = longest_first == longest_distance && longest + longest_distance == n &&
+                        longest >= (kPeriods - 1) * longest_distance;
+  if (longest < kFewest || periodic) return {};
+  return fmt::format(
+      "frames {} to {} equal frames {} to {} to the bit: this part of the film is in the stack twice, and "
+      "its "
+      "cycles count twice, as noise makes no two frames of a camera equal",
+      longest_first, longest_first + longest - 1, longest_first - longest_distance,
+      longest_first + longest - 1 - longest_distance);
 }
 
 std::string repeats_in_words(std::span<const std::uint8_t> repeats, const FrameRange& range) {

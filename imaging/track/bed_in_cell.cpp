@@ -10,10 +10,12 @@
 namespace twincell::imaging {
 
 BedInCell::BedInCell(TrajectorySink& writer, const TrajectoryInfo& info, const CellDescription& cell,
-                     int height_px)
+                     int width_px, int height_px)
     : writer_(writer), info_(info) {
   if (!cell.origin || !cell.pixels_per_sigma) return;
   if (info.box.boundary[0] == Boundary::wall) width_ = cell.width.value_or(0);
+  picture_left_ = -cell.origin->x_px / *cell.pixels_per_sigma;
+  picture_right_ = picture_left_ + width_px / *cell.pixels_per_sigma;
   plate_ = info.columns.plate_height && cell.origin->y_px < height_px;
 }
 
@@ -41,12 +43,16 @@ void BedInCell::append(const Frame& frame) {
 
 bool BedInCell::is_layered() const {
   constexpr double kMinLayers = 2;
-  return width_ > 0 && !beads_.empty() && upper_median(beads_) >= kMinLayers * width_;
+  if (width_ <= 0 || beads_.empty()) return false;
+  // Over the width of the bed, not that of the cell, which may be what is wrong.
+  const double bed = width_ - upper_median(left_) - upper_median(right_);
+  return upper_median(beads_) >= kMinLayers * std::min(bed, width_);
 }
 
 std::vector<BedInCell::Finding> BedInCell::findings() const {
   constexpr double kMaxGap = 0.35;        // bead diameters
   constexpr double kRestQuantile = 0.05;  // of the gaps above the plate: the bed rests on it
+  constexpr double kCut = 1;  // bead diameters from the border of the picture, within which it cuts the bed
   constexpr std::size_t kMinFrames = 10;
   std::vector<Finding> all;
   if (left_.size() < kMinFrames) return all;
@@ -65,8 +71,9 @@ std::vector<BedInCell::Finding> BedInCell::findings() const {
                      -gap});
   };
   if (is_layered()) {
-    side("left", upper_median(left_));
-    side("right", upper_median(right_));
+    const double left = upper_median(left_), right = upper_median(right_);
+    if (picture_left_ <= 0 || left > picture_left_ + kCut) side("left", left);
+    if (picture_right_ >= width_ || width_ - right < picture_right_ - kCut) side("right", right);
   }
   if (below_.size() < kMinFrames) return all;
   std::vector<double> gaps = below_;

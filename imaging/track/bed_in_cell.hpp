@@ -16,12 +16,14 @@ namespace twincell::imaging {
 class BedInCell : public TrajectorySink {
  public:
   /// \param writer, info outlive this object
-  /// \param height_px of the picture: a plate below it is not checked
-  BedInCell(TrajectorySink& writer, const TrajectoryInfo& info, const CellDescription& cell, int height_px);
+  /// \param width_px, height_px of the picture: a plate below it is not checked, nor a wall beside it if the
+  /// picture cuts the bed
+  BedInCell(TrajectorySink& writer, const TrajectoryInfo& info, const CellDescription& cell, int width_px,
+            int height_px);
   void append(const Frame& frame) override;
   /// Observations that contradict the stated cell, as sentences: over the frames, the median gap at a side
   /// wall, and the gap at the plate that 5 % of the frames fall below, each if it exceeds 0.35 bead diameters
-  /// to either side. Walls are checked for beds of two layers and more.
+  /// to either side. Walls are checked for beds of two layers and more over their own width.
   [[nodiscard]] std::vector<std::string> doubts() const;
   /// The first of these in a bed of two layers and more with a gap above one bead diameter, which no bed has;
   /// empty if there is none.
@@ -38,6 +40,7 @@ class BedInCell : public TrajectorySink {
   TrajectorySink& writer_;
   const TrajectoryInfo& info_;
   double width_ = 0;                                  ///< sigma; 0: not checked
+  double picture_left_ = 0, picture_right_ = 0;       ///< its borders from the left wall, sigma
   bool plate_ = false;                                ///< checked
   std::vector<double> left_, right_, below_, beads_;  ///< by frame: gaps, sigma, and the number of beads
 };

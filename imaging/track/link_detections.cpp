@@ -340,6 +340,8 @@ LinkedDetections link_detections(const DetectionStore& located, LinkOptions link
   try {
     PhaseTable phases = determine_phases(located, link, cell, source,
                                          of_film ? without_repeats(evidence) : evidence, repeats);
+    if (!evidence.copied.empty())
+      phases.warning = evidence.copied + (phases.warning.empty() ? "" : "; ") + phases.warning;
     if (phases.not_checked.empty()) {
       if (!of_film && !evidence.repeats.empty())
         phases.warning =

@@ -60,6 +60,7 @@ class EvidenceCollectingSource : public FrameSource {
   [[nodiscard]] LockEvidence evidence() const {
     LockEvidence all = evidence_;
     all.repeats = repeated_.repeats();
+    all.copied = repeated_.copied();
     if (all.times_s.size() != all.plate_px.size()) all.times_s.clear();
     return all;
   }

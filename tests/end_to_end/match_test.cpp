@@ -350,6 +350,19 @@ TEST(Match, TheCellFileOfAnotherStackIsRefused) {
   EXPECT_FALSE(fs::exists(folder / "twin/experiment.h5"));
 }
 
+// One cell for two strengths, which states one of them: to trust it would be wrong for the other.
+TEST(Match, ACellOfSeveralStacksThatStatesOneStrengthIsRefusedWithTheRemedy) {
+  const TemporaryFolder folder;
+  const fs::path stronger = kStack.parent_path() / "gamma-1.6";
+  const Ran refused = run_program({"match", kStack, stronger, stronger / "CELL.toml", "-o", folder / "twins",
+                                   "--twins", "1", "--no-film", "-q"});
+  EXPECT_EQ(refused.code, 2) << refused.err;
+  EXPECT_NE(refused.err.find("the cell serves 2 stacks: leave the strength of the drive out of it"),
+            std::string::npos)
+      << refused.err;
+  EXPECT_EQ(refused.err.find("--trust-stated-drive"), std::string::npos) << refused.err;
+}
+
 /// The shipped cell with one line replaced.
 fs::path cell_with(const TemporaryFolder& folder, const std::string& key, const std::string& line_of_key) {
   std::ifstream in(kStack / "CELL.toml");

@@ -15,7 +15,7 @@ namespace {
 /// What is said of a bed 10 beads wide and 4 high that rests on its plate in half of each cycle, if the cell
 /// is stated to be so wide and begins so far left and below.
 std::string said(double width, double left = 0, double low = 0, double origin_row = 200, int layers = 4,
-                 std::string* contradiction = nullptr) {
+                 std::string* contradiction = nullptr, int width_px = 300) {
   CellDescription cell;
   cell.origin = PixelPoint{20, origin_row};
   cell.pixels_per_sigma = 12;
@@ -25,7 +25,7 @@ std::string said(double width, double left = 0, double low = 0, double origin_ro
   info.columns.plate_height = true;
   info.box.boundary[0] = Boundary::wall;
   MemoryTrajectory out(info);
-  BedInCell watched(out, info, cell, 240);
+  BedInCell watched(out, info, cell, width_px, 240);
   for (int f = 0; f < 40; ++f) {
     Frame frame;
     frame.step = f;
@@ -55,6 +55,15 @@ TEST(BedInCell, WallsThatNoBeadTouchesAreDoubtful) {
   EXPECT_NE(said(11, 1).find("no closer to the left wall than 1.00"), std::string::npos);
   EXPECT_NE(said(9.5).find("the beads reach 0.50 bead diameters into the right wall"), std::string::npos);
   EXPECT_EQ(said(11, 0, 0, 200, 1), "") << "a single layer need not reach the walls";
+}
+
+// A width of 100 in place of 10, as by a wrong power of ten: the wall is not in the picture, and the bed ends
+// within it. A picture of the middle of a wide cell cuts its bed.
+TEST(BedInCell, AWallOutsideThePictureIsDoubtfulWhereTheBedEndsInIt) {
+  EXPECT_NE(said(100).find("no closer to the right wall than 90.00"), std::string::npos) << said(100);
+  std::string contradiction;
+  EXPECT_EQ(said(100, 0, 0, 200, 4, &contradiction, 20 + 124), "");
+  EXPECT_EQ(contradiction, "");
 }
 
 TEST(BedInCell, ABedOfLayersABeadAwayContradictsTheCell) {

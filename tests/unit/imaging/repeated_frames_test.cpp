@@ -93,3 +93,19 @@ TEST(RepeatedFrames, TheyTakeThePhaseOfTheFrameBefore) {
       EXPECT_EQ(table.is_used(frame), copy == 0) << frame;
     }
 }
+
+// Thirty frames of a film that were copied behind it under other names.
+TEST(RepeatedFrames, APartThatIsInTheStackTwiceIsFound) {
+  RepeatedFrames twice, once, periodic;
+  for (unsigned f = 0; f < 60; ++f) twice.add(bar(sine(f, 20), 2, f));
+  for (unsigned f = 20; f < 50; ++f) twice.add(bar(sine(f, 20), 2, f));
+  EXPECT_EQ(
+      twice.copied().find("frames 60 to 89 equal frames 20 to 49 to the bit: this part of the film is in "
+                          "the stack twice"),
+      0U)
+      << twice.copied();
+  for (unsigned f = 0; f < 60; ++f) once.add(bar(sine(f, 20), 2, f));
+  EXPECT_EQ(once.copied(), "");
+  for (unsigned f = 0; f < 60; ++f) periodic.add(bar(sine(f % 20, 20)));
+  EXPECT_EQ(periodic.copied(), "") << "a film without noise repeats its cycles";
+}
