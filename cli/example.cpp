@@ -70,6 +70,14 @@ fs::path data_folder() {
                                TWINCELL_DATA_SAMPLES));
 }
 
+/// Why a copy failed. The C++ library reports a full disk as an error of input or output.
+std::string reason_of(const std::error_code& error, const fs::path& folder) {
+  constexpr std::uintmax_t kFull = 1 << 16;  // bytes, less than the largest input
+  std::error_code unknown;
+  const fs::space_info space = fs::space(folder, unknown);
+  return !unknown && space.available < kFull ? "No space left on device" : error.message();
+}
+
 void run(const std::string& output, const Common& common) {
   const fs::path data = data_folder();
   AtomicPath folder(output, example_folder());
@@ -83,7 +91,7 @@ void run(const std::string& output, const Common& common) {
     fs::copy(data / input.source, folder.part() / input.name, fs::copy_options::recursive, ec);
     if (ec)
       throw RunError(fmt::format("{}: cannot be copied to {}: {}.", (data / input.source).string(), output,
-                                 ec.message()));
+                                 reason_of(ec, folder.part())));
     text += fmt::format("  {:<15} {}\n", input.name, input.purpose);
     files[input.name] = input.purpose;
   }

@@ -12,6 +12,7 @@
 #include "cli/verb.hpp"
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/escape.hpp"
 #include "core/json_text.hpp"
 #include "core/plural.hpp"
 
@@ -30,9 +31,11 @@ Product fit_folder() {
   return Product::whole_folder("a fit", std::move(files));
 }
 
-std::string text_of(const calibration::CurveFit& fit) {
+std::string text_of(const calibration::TableFit& result) {
+  const calibration::CurveFit& fit = result.fit;
   const calibration::FitReport& report = fit.fit;
-  std::string text = fmt::format("{}: {}   ({})\n{} used", fit.law->name, fit.law->formula, fit.law->source,
+  std::string text = fmt::format("{}: {}   ({})\nx is {}, y is {}; {} used", fit.law->name, fit.law->formula,
+                                 fit.law->source, one_line(result.columns.x), one_line(result.columns.y),
                                  plural(fit.n_used, "point"));
   if (fit.n_outside > 0) text += fmt::format(", {} outside the window", fit.n_outside);
   if (fit.n_zero > 0)
@@ -85,7 +88,7 @@ void run(const Common& common, FitOptions o) {
   provenance.inputs = {o.table};
   nlohmann::json document = nlohmann::json::parse(calibration::fit_json(result));
   document["provenance"] = nlohmann::json::parse(provenance.to_json());
-  std::string text = text_of(fit);
+  std::string text = text_of(result);
   if (folder) {
     analysis::draw(calibration::fit_figure(fit, result.points, result.columns.x, result.columns.y),
                    folder->part());

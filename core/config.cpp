@@ -475,6 +475,20 @@ std::string nearest_key(const std::string& key, const std::vector<std::string>& 
   return same == known.end() ? "" : *same;
 }
 
+/// "; [time] has cycles, discard, ...": the keys that are known in the table of a wrong one, if a reader can
+/// look through them.
+std::string keys_of_table(const std::string& key, const std::set<std::string>& known) {
+  constexpr std::size_t kMost = 16;
+  const std::size_t point = key.rfind('.');
+  if (point == std::string::npos) return {};
+  const std::string table = key.substr(0, point);
+  std::vector<std::string> names;
+  for (auto at = known.lower_bound(table + "."); at != known.end() && at->starts_with(table + "."); ++at)
+    if (at->find('.', point + 1) == std::string::npos) names.push_back(at->substr(point + 1));
+  if (names.empty() || names.size() > kMost) return {};
+  return fmt::format("; [{}] has {}", table, fmt::join(names, ", "));
+}
+
 }  // namespace
 
 void Config::refuse_unknown_keys() const {
@@ -484,7 +498,7 @@ void Config::refuse_unknown_keys() const {
       throw ConfigError(shared_->where_of(node, key),
                         "is a name in quotes, in which a point separates nothing; write it without quotes.");
     throw ConfigError(shared_->where_of(node, key),
-                      nearest.empty() ? "there is no such key."
+                      nearest.empty() ? "there is no such key" + keys_of_table(key, shared_->asked) + "."
                                       : fmt::format("there is no such key; did you mean '{}'?", nearest));
   });
 }

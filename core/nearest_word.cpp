@@ -26,6 +26,9 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
+  const auto lower = [](unsigned char c) { return std::tolower(c); };
+  for (const std::string& candidate : known)
+    if (std::ranges::equal(candidate, word, {}, lower, lower)) return candidate;
   std::string nearest;
   // Half of a short word could be anything.
   const auto letters = static_cast<std::size_t>(

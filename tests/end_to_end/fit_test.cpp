@@ -47,8 +47,9 @@ TEST(Fit, TextJsonAndPictureSayTheSame) {
   const Ran text = run_program({"fit", table, "--law", "arrhenius", "--trials", "trials"});
   EXPECT_EQ(text.code, 0) << text.err;
   EXPECT_NE(text.out.find("E_b"), std::string::npos);
-  EXPECT_NE(text.out.find("7 points used, 1 of them zero; maximum likelihood of the counts"),
-            std::string::npos)
+  EXPECT_NE(
+      text.out.find("x is K_m, y is p_s; 7 points used, 1 of them zero; maximum likelihood of the counts"),
+      std::string::npos)
       << text.out;
 }
 

@@ -30,7 +30,10 @@ std::uint64_t number_at(const std::uint8_t* b, std::size_t n, bool big_first) {
 ByteFile::ByteFile(std::filesystem::path file) : file_(std::move(file)) {
   std::error_code error;
   const auto status = std::filesystem::status(file_, error);
-  if (!std::filesystem::exists(status)) refuse("does not exist.");
+  if (!std::filesystem::exists(status))
+    refuse(file_.string().find('*') == std::string::npos
+               ? "does not exist."
+               : "does not exist; name the folder of the pictures, not a pattern.");
   if (std::filesystem::is_directory(status)) refuse("is a folder, not a file of frames.");
   if (!std::filesystem::is_regular_file(status)) refuse("is not a regular file.");
   in_.open(file_, std::ios::binary);

@@ -56,6 +56,9 @@ TEST(Scene, ValidScenesAreAccepted) {
 TEST(Scene, ComplaintsNameLineKeyValueAndBound) {
   expect_complaint(kGood + "[contact]\nmuu = 0.1\n",
                    "scene.toml:7:7: contact.muu: there is no such key; did you mean 'contact.mu'?");
+  expect_complaint(kGood + "[time]\nframes_per_cycle = 12\n",
+                   "time.frames_per_cycle: there is no such key; [time] has allow_unstable_step, contacts, "
+                   "cycles, discard, ");
   expect_complaint(kGood + "[contact.lid]\nmuu = 0.1\n", "contact.lid.muu: there is no such key");
   expect_complaint(kGood + "[cell]\nwidth = 0.9\n", "does not fit into a cell 0.9 wide");
   expect_complaint(kGood + "[time]\nsteps_per_contact = 2\n",
