@@ -104,7 +104,7 @@ class Rims {
     constexpr int kRounds = 4;
     constexpr double kMinShown = 0.75;  // of the directions in which the rim may be seen
     constexpr double kMinSeen = 0.25;   // of all directions
-    constexpr double kNarrower = 0.5, kTolerances = 3;
+    constexpr double kNarrower = 0.5;
     for (int round = 0; round < kRounds;
          ++round, within_px = std::max(kTolerances * tolerance(c), kNarrower * within_px)) {
       const Seen seen = look(c, within_px);
@@ -125,12 +125,33 @@ class Rims {
       return std::hypot(b.x - c.x, b.y - c.y) < c.radius + kApart * b.radius;
     });
   }
+
+  /// Whether the inside of a circle is full of edges, as a group of beads is that were not located: nearly
+  /// all of it is within a fifth of a bead from a change of grey level half as steep as the rim is. The
+  /// glare of a single disc covers a part of it.
+  [[nodiscard]] bool is_full_of_edges(const Circle& c, double bead_px) const {
+    constexpr double kOfRim = 0.5, kReach = 0.2, kFull = 0.92;
+    constexpr double kRim = 0.125, kRim_px = 1.5;  // which is not the inside; in beads; at least
+    const double steep = kOfRim * typical_step(c), inside = c.radius - std::max(kRim_px, kRim * bead_px);
+    const int half = cvCeil(c.radius), reach = std::max(1, cvRound(kReach * bead_px));
+    cv::Mat1b edges = cv::Mat1b::zeros(2 * half + 1, 2 * half + 1), within = edges.clone();
+    for (int y = -half; y <= half; ++y)
+      for (int x = -half; x <= half; ++x) {
+        if (std::hypot(x, y) > inside) continue;
+        within(y + half, x + half) = 255;
+        if (gradient(c.x + x, c.y + y) > steep) edges(y + half, x + half) = 255;
+      }
+    cv::dilate(edges, edges, cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * reach + 1, 2 * reach + 1}));
+    return cv::countNonZero(edges & within) > kFull * cv::countNonZero(within);
+  }
   [[nodiscard]] bool has_centre_of(const Circle& c) const {
     return c.x >= 0 && c.y >= 0 && c.x <= grey_.cols - 1 && c.y <= grey_.rows - 1;
   }
 
  private:
   static constexpr int kDirections = 96;
+  static constexpr double kHalf_px = 1;     // of the distance over which a step is taken
+  static constexpr double kTolerances = 3;  // from the circle, to which edges are looked for in the end
 
   struct Edge {
     double along_x, along_y;  ///< direction from the centre
@@ -155,7 +176,7 @@ class Rims {
 
   /// The steepest edge in each direction, unless most others are much steeper.
   [[nodiscard]] Seen look(const Circle& c, double within_px) const {
-    constexpr double kSample_px = 0.5, kHalf_px = 1, kNoises = 3, kPart = 0.05;
+    constexpr double kSample_px = 0.5, kNoises = 3, kPart = 0.05;
     Seen seen;
     std::vector<double> steps;
     for (int k = 0; k < kDirections; ++k) {
@@ -177,6 +198,18 @@ class Rims {
     const double least = kPart * upper_median(std::move(steps));
     std::erase_if(seen.edges, [&](const Edge& e) { return e.step < least; });
     return seen;
+  }
+
+  /// Median step across a rim.
+  [[nodiscard]] double typical_step(const Circle& c) const {
+    std::vector<double> steps;
+    for (const Edge& e : look(c, kTolerances * tolerance(c)).edges) steps.push_back(e.step);
+    return steps.empty() ? 0 : upper_median(std::move(steps));
+  }
+  /// Change of the grey level over the two pixels across which a rim is seen.
+  [[nodiscard]] double gradient(double x, double y) const {
+    return std::hypot(level(x + kHalf_px, y) - level(x - kHalf_px, y),
+                      level(x, y + kHalf_px) - level(x, y - kHalf_px));
   }
 
   /// Distance from a circle at which an edge is on it, px.
@@ -260,7 +293,8 @@ std::vector<LargerDisc> larger_discs(const cv::Mat& grey, const std::vector<Dete
   std::vector<Circle> found;
   for (const Circle& c : most_voted(levels, beads, diameter_px, scale, noise))
     if (const auto rim = rims.fitted(c, kWithin * c.radius + kWithinPixels * scale);
-        rim && 2 * rim->radius >= kLarger * diameter_px && rims.has_centre_of(*rim) && !rims.has_beads(*rim))
+        rim && 2 * rim->radius >= kLarger * diameter_px && rims.has_centre_of(*rim) &&
+        !rims.has_beads(*rim) && !rims.is_full_of_edges(*rim, diameter_px))
       found.push_back(*rim);
   std::stable_sort(found.begin(), found.end(),
                    [](const Circle& a, const Circle& b) { return a.radius > b.radius; });
