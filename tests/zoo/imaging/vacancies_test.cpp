@@ -21,27 +21,31 @@
 namespace twincell::zoo {
 namespace {
 
-constexpr int kSide = 240;
+/// Side of a picture that is twenty beads wide, px; of large beads, fewer suffice.
+int side_for(double diameter) {
+  return static_cast<int>(std::min(20 * diameter, 240.0));
+}
 
 Exhibit crystal(double diameter, double vacancies, std::uint64_t seed, double blur = kBlur) {
+  const int side = side_for(diameter);
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform;
   std::normal_distribution<double> normal;
   Places places;
-  for (int row = 0; row * 0.8660254 * diameter < kSide + 2 * diameter; ++row)
-    for (int k = 0; k * diameter < kSide + 2 * diameter; ++k) {
+  for (int row = 0; row * 0.8660254 * diameter < side + 2 * diameter; ++row)
+    for (int k = 0; k * diameter < side + 2 * diameter; ++k) {
       if (uniform(random) < vacancies) continue;
       places.push_back({(k + 0.5 * (row % 2)) * diameter - 0.9 * diameter + 0.02 * normal(random),
                         0.8660254 * row * diameter - 0.8 * diameter + 0.02 * normal(random), 0.5 * diameter});
     }
-  Painter canvas(kSide, kLight);
+  Painter canvas(side, kLight);
   paint_opaque(canvas, places);
   return {canvas.exposed(blur, kNoise, seed), truth_of(places)};
 }
 
 TEST(Vacancies, AreNotTakenForBeads) {
-  for (const double diameter : {7.0, 8.0, 10.0, 14.0})
-    for (const double vacancies : {0.02, 0.1, 0.2}) {
+  for (const double diameter : {7.0, 10.0, 14.0})
+    for (const double vacancies : {0.02, 0.2}) {
       const Exhibit exhibit = crystal(diameter, vacancies, 5);
       imaging::LocatorOptions open;
       open.polarity_known = false;
@@ -51,10 +55,11 @@ TEST(Vacancies, AreNotTakenForBeads) {
       for (const imaging::Detection& b :
            imaging::locate(exhibit.picture, imaging::completed(*found, open)).beads)
         beads.push_back({b.x, b.y, -1});
+      const int side = side_for(diameter);
       std::vector<imaging::TruthBead> inside;
       for (imaging::TruthBead t : exhibit.truth) {
-        if (t.x < -0.5 || t.y < -0.5 || t.x > kSide - 0.5 || t.y > kSide - 0.5) continue;
-        t.counts = std::min({t.x, t.y, kSide - 1 - t.x, kSide - 1 - t.y}) > 0.5 * diameter;
+        if (t.x < -0.5 || t.y < -0.5 || t.x > side - 0.5 || t.y > side - 0.5) continue;
+        t.counts = std::min({t.x, t.y, side - 1 - t.x, side - 1 - t.y}) > 0.5 * diameter;
         inside.push_back(t);
       }
       imaging::Scorer scorer;
@@ -74,7 +79,7 @@ TEST(Vacancies, TakenForBeadsAreDoubted) {
   open.polarity_known = false;
   const imaging::SettingsChoice choice = imaging::choose_settings(crystal(6, 0.02, 5, 0.9).picture, open);
   ASSERT_FALSE(choice.tried.empty());
-  EXPECT_LT(choice.tried.front().beads, 60U);
+  EXPECT_LT(choice.tried.front().beads, 20U);
   EXPECT_NEAR(choice.uncovered_lattice_px, 6, 0.2);
   const std::vector<std::string> doubts = imaging::settings_doubts(choice, "exact");
   EXPECT_TRUE(std::any_of(doubts.begin(), doubts.end(), [](const std::string& said) {
