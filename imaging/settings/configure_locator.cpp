@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -99,14 +100,9 @@ LocatorOptions with_spread_of_sizes(const cv::Mat& frame, const LocatorOptions& 
   return locate(frame, wide).beads.size() > beads.size() ? wide : settled;
 }
 
-/// The smallest distance of two discs, px, if they may be the highlights of larger beads: that of a tenth of
-/// them is more than two diameters, and they are less than 6 px wide or most have a neighbour at that
-/// distance, as beads that touch. 0: they are not.
-double distance_of_parts(const std::vector<Detection>& beads, const LocatorOptions& settled) {
-  constexpr std::size_t kMinDiscs = 20;
-  constexpr double kFew = 0.1, kDiameters = 2, kSmall_px = 6, kTouching = 1.1;
-  if (beads.size() < kMinDiscs || !settled.other_diameters_px.empty()) return 0;
-  constexpr std::size_t kMost = 2000;  // of whose neighbours a quantile is taken
+/// Distance of each disc from the nearest other one, px, ascending; of some, if there are many.
+std::vector<double> distances_of_neighbours(const std::vector<Detection>& beads) {
+  constexpr std::size_t kMost = 2000;
   const std::size_t stride = 1 + beads.size() / kMost;
   std::vector<double> nearest;
   for (std::size_t k = 0; k < beads.size(); k += stride) {
@@ -117,10 +113,56 @@ double distance_of_parts(const std::vector<Detection>& beads, const LocatorOptio
     nearest.push_back(least);
   }
   std::sort(nearest.begin(), nearest.end());
+  return nearest;
+}
+
+/// The smallest distance of two discs, px, if they may be the highlights of larger beads: that of a tenth of
+/// them is more than two diameters, and they are less than 6 px wide or most have a neighbour at that
+/// distance, as beads that touch. 0: they are not.
+double distance_of_parts(const std::vector<Detection>& beads, const LocatorOptions& settled) {
+  constexpr std::size_t kMinDiscs = 20;
+  constexpr double kFew = 0.1, kDiameters = 2, kSmall_px = 6, kTouching = 1.1;
+  if (beads.size() < kMinDiscs || !settled.other_diameters_px.empty()) return 0;
+  const std::vector<double> nearest = distances_of_neighbours(beads);
   const auto n = static_cast<double>(nearest.size());
   const double closest = nearest[static_cast<std::size_t>(kFew * n)], half = nearest[nearest.size() / 2];
   if (closest <= kDiameters * settled.diameter_px) return 0;
   return settled.diameter_px < kSmall_px || half < kTouching * closest ? closest : 0;
+}
+
+/// Whether discs are bright and their levels do not end at the fitted rim as those of plain discs do,
+/// although the picture is hardly noisy: shaded spheres fade outwards, and their rim is found too far inside.
+bool fade_outwards(const cv::Mat& frame, const std::vector<Detection>& beads, const LocatorOptions& settled) {
+  constexpr double kPlain = 0.985, kMaxNoise = 0.04;  // score; in the contrast of the beads
+  if (!settled.preprocess.bright) return false;
+  std::vector<double> scores, contrasts;
+  for (const Detection& b : beads) {
+    scores.push_back(b.score);
+    contrasts.push_back(std::abs(b.raw_mass) / (std::numbers::pi * b.radius * b.radius));
+  }
+  cv::Mat1f levels;
+  frame.convertTo(levels, CV_32F);
+  return upper_median(std::move(scores)) < kPlain &&
+         noise_level(levels) < kMaxNoise * upper_median(std::move(contrasts));
+}
+
+/// The distance of neighbours, px, if it is the width of beads that touch and are located too small: nearly
+/// all discs have a neighbour at one distance, which is larger than the width of the discs, and they fade
+/// outwards. 0: it is not.
+double width_by_neighbours(const cv::Mat& frame, const std::vector<Detection>& beads,
+                           const LocatorOptions& settled) {
+  constexpr std::size_t kMinDiscs = 30;
+  constexpr double kMost = 0.8, kAlike = 0.03;  // of the discs; of their distance
+  constexpr double kWider = 1.15;
+  if (beads.size() < kMinDiscs || !settled.other_diameters_px.empty()) return 0;
+  const std::vector<double> nearest = distances_of_neighbours(beads);
+  const double typical = nearest[nearest.size() / 2];
+  const auto alike = std::count_if(nearest.begin(), nearest.end(),
+                                   [&](double r) { return std::abs(r - typical) < kAlike * typical; });
+  if (static_cast<double>(alike) < kMost * static_cast<double>(nearest.size()) ||
+      typical <= kWider * 2 * upper_median(radii_of(beads)) || !fade_outwards(frame, beads, settled))
+    return 0;
+  return typical;
 }
 
 /// The median width of discs, px, if they are smaller than the beads that can be located well. 0: they are
@@ -192,7 +234,11 @@ LocatorConfiguration adapted(const cv::Mat& frame, ChoiceOnFrame chosen, const L
   settled = with_spread_of_sizes(frame, with_pale_discs(frame, settled));
   const std::vector<Detection> beads = locate(frame, settled).beads;
   if (!chosen.choice.pairs) chosen.choice.apart_px = distance_of_parts(beads, settled);
-  if (given.diameter_px <= 0) chosen.choice.spots_px = width_of_spots(beads, settled);
+  if (given.diameter_px <= 0) {
+    chosen.choice.spots_px = width_of_spots(beads, settled);
+    if (!chosen.choice.pairs && chosen.choice.apart_px <= 0 && chosen.choice.spots_px <= 0)
+      chosen.choice.touching_px = width_by_neighbours(frame, beads, settled);
+  }
   return {settled, static_cast<std::int64_t>(chosen.number), std::move(chosen.choice)};
 }
 

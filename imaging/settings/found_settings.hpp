@@ -70,6 +70,9 @@ struct SettingsChoice {
   bool beads_of_pairs = false;
   /// Width of the chosen discs, px, if it is that of the highlights of larger beads or of gaps. 0: it is not.
   double spots_px = 0;
+  /// The distance of neighbours, px, if it is the width of shaded beads that touch, of which the chosen discs
+  /// are the bright middle. 0: it is not, or another note says so.
+  double touching_px = 0;
   /// Round regions that are larger than the beads and that no bead explains (larger_discs.hpp).
   std::vector<LargerDisc> larger;
   /// Share of the pixels that have the brightest grey level of the picture, if the beads are dark. A camera

@@ -73,6 +73,12 @@ std::vector<std::string> settings_doubts(const SettingsChoice& choice, const std
         "between them; check the overlay of twincell locate --overlay, and give the diameter of "
         "larger beads with --diameter",
         choice.spots_px));
+  if (choice.touching_px > 0)
+    doubts.push_back(fmt::format(
+        "the located discs are {:.1f} px wide, but most are {:.1f} px from their nearest neighbour, as beads "
+        "of that width that touch: the rims of shaded beads are found too far inside; compare the overlay of "
+        "twincell locate --overlay with that of --diameter {:.1f}",
+        choice.tried.front().rim_px, choice.touching_px, choice.touching_px));
   if (!choice.larger.empty()) {
     const LargerDisc& largest = choice.larger.front();
     doubts.push_back(fmt::format(
