@@ -275,6 +275,13 @@ void run_numbers(const NumberFlags& o, const Common& common) {
     t_c = c.contact_time();
     s = {.k_n = *o.k_n, .gamma_n = *o.gamma_n, .c_n = *o.gamma_n * o.m_eff};
   }
+  constexpr double kSoft = 100;  // m g/sigma
+  if (s.k_n < kSoft)
+    note(
+        common,
+        fmt::format("by its own weight a bead sinks {:.3g} sigma into a plate of this stiffness; the contact "
+                    "time is in t0 = sqrt(sigma/g), which is 14 ms for beads of 2 mm, not in s or ms.",
+                    1 / s.k_n));
   const nlohmann::json d = {{"m_eff", o.m_eff}, {"restitution", e},     {"contact_time", number_or_null(t_c)},
                             {"k_n", s.k_n},     {"gamma_n", s.gamma_n}, {"c_n", s.c_n}};
   std::string text;

@@ -11,6 +11,7 @@
 
 #include "core/escape.hpp"
 #include "core/nearest_word.hpp"
+#include "trajectory/foreign/format.hpp"
 
 namespace twincell::cli {
 namespace {
@@ -75,6 +76,9 @@ std::string advice_on_kind(const std::string& verb, const std::string& word) {
     if (extension == ".toml")
       return fmt::format("twincell simulate {} -o {} makes a trajectory of a scene", shell_word(word),
                          shell_word(fs::path(word).stem().string() + ".h5"));
+    if (format_of_extension(extension) != nullptr)
+      return fmt::format("twincell import {} -o {} makes a trajectory of a file of another program",
+                         shell_word(word), shell_word(fs::path(word).stem().string() + ".h5"));
   }
   if (is_one_of(verb, kReadScenes)) {
     if (fs::is_directory(word, error))

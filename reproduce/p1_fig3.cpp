@@ -324,6 +324,12 @@ Target crystal_above_random(const Size& size, const std::deque<Boundary>& all, i
         std::abs(evidence_above(crystal->onset(), random->onset())) / 2);
     t.verdict = above(crystal->onset(), random->onset());
     t.reason = without_beds_at_rest(*random, *crystal);
+    if (random->onset().high && !random->onset().low)
+      t.reason += fmt::format(
+          "; at Gamma {:g}, where the search begins, some random beds exceed it already (docs/reproduce.md "
+          "has "
+          "one from Gamma 1 on)",
+          random->plan.search->low);
     t.runs =
         fmt::format("{} and {} runs, {} cycles", crystal->onset().n, random->onset().n, size.convect_cycles);
     if (t.verdict == Verdict::inconclusive)

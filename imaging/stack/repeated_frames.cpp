@@ -84,8 +84,7 @@ std::string RepeatedFrames::copied() const {
   if (longest < kFewest || periodic) return {};
   return fmt::format(
       "frames {} to {} equal frames {} to {} to the bit: this part of the film is in the stack twice, and "
-      "its "
-      "cycles count twice, as noise makes no two frames of a camera equal",
+      "its cycles count twice, as noise makes no two frames of a camera equal",
       longest_first, longest_first + longest - 1, longest_first - longest_distance,
       longest_first + longest - 1 - longest_distance);
 }

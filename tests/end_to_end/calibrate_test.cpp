@@ -282,6 +282,17 @@ TEST(Calibrate, NumbersGoThereAndBack) {
   EXPECT_NEAR(back["contact_time"].get<double>(), 0.002, 1e-9);
 }
 
+// A contact time in ms: k_n = 1.02 m g/sigma, so that the weight compresses the contact by 1/1.02 sigma.
+TEST(Calibrate, ASoftContactIsDoubted) {
+  const auto said = [](const std::string& contact_time) {
+    return run_program(
+               {"calibrate", "contacts", "numbers", "--restitution", "0.9", "--contact-time", contact_time})
+        .err;
+  };
+  EXPECT_NE(said("2.2").find("sinks 0.98 sigma"), std::string::npos) << said("2.2");
+  EXPECT_EQ(said("0.0022"), "");
+}
+
 TEST(Calibrate, AnOverdampedContactHasNoContactTime) {
   // Damping at and beyond 2 sqrt(k_n / m_eff) = 894.43 for k_n = 1e5, m_eff = 0.5.
   const std::vector<std::string> words{"calibrate", "contacts", "numbers", "--k-n", "1e5", "--gamma-n"};

@@ -78,6 +78,8 @@ def test_next_steps():
     out = folder / "out.h5"
     minimal = folder / "minimal.toml"
     minimal.write_text("[drive]\ngamma = 1.5\n")
+    dump = folder / "run.LAMMPSTRJ"
+    dump.write_text("ITEM: TIMESTEP\n0\n")
     for words, code, sentence in (
         (("info", folder / "framse"), 3, f"{folder}/framse: does not exist; did you mean '{folder}/frames'?"),
         (("explain", folder / "scnee.toml"), 3,
@@ -90,6 +92,7 @@ def test_next_steps():
          f"{minimal}: drive: two of amplitude, omega, frequency, gamma, k_m, peak_velocity are needed, only gamma is given; "
          "twincell new STACK -o CELL.toml measures the drive."),
         (("analyze", scene), 3, f"; twincell simulate {scene} -o scene.h5 makes a trajectory of a scene."),
+        (("analyze", dump), 3, f"; twincell import {dump} -o run.h5 makes a trajectory of a file of another program."),
         (("analyze", frames), 3, f"; twincell track {frames} -o frames.h5 makes a trajectory of a stack of frames."),
         (("explain", plan), 2, "this file looks like a plan of a sweep, which twincell sweep run reads."),
         (("sweep", "run", scene), 2, "this file looks like a scene, which twincell simulate reads."),

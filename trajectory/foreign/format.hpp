@@ -60,6 +60,9 @@ std::string read_formats();
 /// \throws ConfigError at `option` with all words if there is none
 const ForeignFormat& foreign_format(const std::string& word, const std::string& option);
 
+/// The format that is read from files of this extension, ".gsd", in any case; null if there is none.
+const ForeignFormat* format_of_extension(std::string extension);
+
 /// The format that is read and has this file's extension; for any other extension LAMMPS's dump, if the file
 /// begins as one.
 /// \throws InputError if it cannot be read, ConfigError at --format if no format follows

@@ -54,15 +54,20 @@ const ForeignFormat& foreign_format(const std::string& word, const std::string& 
                                                     words_of([](const ForeignFormat&) { return true; })));
 }
 
-const ForeignFormat& format_of_file(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
+const ForeignFormat* format_of_extension(std::string extension) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (!extension.empty())
-    for (const ForeignFormat* format : foreign_formats())
-      if (format->open != nullptr &&
-          fmt::format("{} ", format->extensions).find(extension + " ") != std::string::npos)
-        return *format;
+  if (extension.empty()) return nullptr;
+  for (const ForeignFormat* format : foreign_formats())
+    if (format->open != nullptr &&
+        fmt::format("{} ", format->extensions).find(extension + " ") != std::string::npos)
+      return format;
+  return nullptr;
+}
+
+const ForeignFormat& format_of_file(const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  if (const ForeignFormat* format = format_of_extension(extension)) return *format;
   if (begins_as_dump(file)) return lammps_dump_format;
   constexpr std::array<std::string_view, 5> kCompressed = {".gz", ".bz2", ".xz", ".zst", ".zip"};
   if (std::find(kCompressed.begin(), kCompressed.end(), extension) != kCompressed.end())
