@@ -4,9 +4,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "core/median.hpp"
@@ -15,15 +15,7 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr std::size_t kDeciles = 9;
-using Deciles = std::array<double, kDeciles>;
-
-Deciles deciles_of(std::vector<double> x) {
-  std::sort(x.begin(), x.end());
-  Deciles all{};
-  for (std::size_t k = 0; k < kDeciles; ++k) all[k] = x[(k + 1) * x.size() / (kDeciles + 1)];
-  return all;
-}
+constexpr std::size_t kDeciles = std::tuple_size_v<Deciles>;
 
 /// Median step of the deciles, and whether nearly all of them make it.
 struct CommonStep {
@@ -50,14 +42,23 @@ double quantile(std::vector<double> values, double share) {
 
 }  // namespace
 
-std::vector<CameraJump> jumps_of_beads(std::span<const std::vector<double>> x_px, double diameter_px) {
-  constexpr std::size_t kMinBeads = 20, kMinFrames = 10, kAround = 3;  // frames
-  constexpr double kUsual = 0.9, kTimesUsual = 4, kLeast = 0.1;        // share; ratio; diameters
-  constexpr double kRemains = 0.5;                                     // of the jump
+std::optional<Deciles> deciles_of(std::vector<double> x_px) {
+  constexpr std::size_t kMinBeads = 20;
+  if (x_px.size() < kMinBeads) return std::nullopt;
+  std::sort(x_px.begin(), x_px.end());
+  Deciles all{};
+  for (std::size_t k = 0; k < kDeciles; ++k) all[k] = x_px[(k + 1) * x_px.size() / (kDeciles + 1)];
+  return all;
+}
+
+std::vector<CameraJump> jumps_of_beads(std::span<const std::optional<Deciles>> x_px, double diameter_px) {
+  constexpr std::size_t kMinFrames = 10, kAround = 3;            // frames
+  constexpr double kUsual = 0.9, kTimesUsual = 4, kLeast = 0.1;  // share; ratio; diameters
+  constexpr double kRemains = 0.5;                               // of the jump
   std::vector<std::size_t> frames;
   std::vector<Deciles> deciles;
   for (std::size_t f = 0; f < x_px.size(); ++f)
-    if (x_px[f].size() >= kMinBeads) frames.push_back(f), deciles.push_back(deciles_of(x_px[f]));
+    if (x_px[f]) frames.push_back(f), deciles.push_back(*x_px[f]);
   if (frames.size() < kMinFrames) return {};
   std::vector<CommonStep> steps{{}};
   std::vector<double> sizes;

@@ -7,6 +7,7 @@
 /// move to either side in any frame, but never all together. Upwards: the plate, which leaves its sine by a
 /// step.
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -21,11 +22,16 @@ struct CameraJump {
   std::optional<double> right_px, down_px;  ///< absent: no jump in this direction was seen
 };
 
+/// The nine deciles of the positions of the beads in a frame, all that a frame leaves in memory.
+using Deciles = std::array<double, 9>;
+/// Empty for fewer than 20 beads.
+std::optional<Deciles> deciles_of(std::vector<double> x_px);
+
 /// The jumps of the beads to one side. In a jump all deciles of the positions move together, by more than
 /// four times what they do between nearly all other frames, and by at least a tenth of a bead; and they do
-/// not return within three frames. \param x_px [frames] positions of the beads of a frame; a frame without
-/// beads is left out
-std::vector<CameraJump> jumps_of_beads(std::span<const std::vector<double>> x_px, double diameter_px);
+/// not return within three frames.
+/// \param x_px [frames]; a frame without deciles is left out
+std::vector<CameraJump> jumps_of_beads(std::span<const std::optional<Deciles>> x_px, double diameter_px);
 
 /// The jump of a plate that follows a sine: the step that explains what a sine and its second harmonic leave
 /// of its height, to a quarter of the step. Empty: there is none, or the plate is not seen.

@@ -303,9 +303,12 @@ void link_frames(const DetectionStore& located, LinkOptions link, const CellDesc
 /// The jumps of a bumped camera.
 std::vector<CameraJump> camera_jumps_of(const DetectionStore& located, const LinkOptions& link,
                                         std::span<const double> plate_px, int frames_per_cycle) {
-  std::vector<std::vector<double>> x_px(located.size());
-  for (std::size_t f = 0; f < located.size(); ++f)
-    for (const TrackedBead& b : located[f]) x_px[f].push_back(b.x_px);
+  std::vector<std::optional<Deciles>> x_px;
+  for (std::size_t f = 0; f < located.size(); ++f) {
+    std::vector<double> of_frame;
+    for (const TrackedBead& b : located[f]) of_frame.push_back(b.x_px);
+    x_px.push_back(deciles_of(std::move(of_frame)));
+  }
   return merged(jumps_of_beads(x_px, link.diameter_px), jump_of_plate(plate_px, frames_per_cycle));
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -33,6 +34,12 @@ std::vector<std::vector<double>> beads(double shift, std::size_t from, std::size
   return all;
 }
 
+std::vector<CameraJump> jumps_of(const std::vector<std::vector<double>>& x_px) {
+  std::vector<std::optional<Deciles>> deciles;
+  for (const std::vector<double>& frame : x_px) deciles.push_back(deciles_of(frame));
+  return jumps_of_beads(deciles, kDiameter);
+}
+
 /// Heights of a plate that follows a sine, read to 0.1 px.
 std::vector<double> plate(double up, std::size_t from, std::size_t lost = kFrames) {
   std::mt19937_64 random(2);
@@ -47,7 +54,7 @@ std::vector<double> plate(double up, std::size_t from, std::size_t lost = kFrame
 
 TEST(CameraJump, AllBeadsThatMoveTogetherAreAJump) {
   for (const double shift : {5.0, -3.0}) {
-    const std::vector<CameraJump> jumps = jumps_of_beads(beads(shift, 47), kDiameter);
+    const std::vector<CameraJump> jumps = jumps_of(beads(shift, 47));
     ASSERT_EQ(jumps.size(), 1U);
     EXPECT_EQ(jumps[0].frame, 47U);
     EXPECT_NEAR(jumps[0].right_px.value(), shift, 0.5);
@@ -56,13 +63,13 @@ TEST(CameraJump, AllBeadsThatMoveTogetherAreAJump) {
 }
 
 TEST(CameraJump, BeadsThatWanderOrReturnAreNone) {
-  EXPECT_TRUE(jumps_of_beads(beads(0, 47), kDiameter).empty());
-  EXPECT_TRUE(jumps_of_beads(beads(5, 47, 48), kDiameter).empty()) << "a shake of one frame";
+  EXPECT_TRUE(jumps_of(beads(0, 47)).empty());
+  EXPECT_TRUE(jumps_of(beads(5, 47, 48)).empty()) << "a shake of one frame";
   // Half of the beads move.
   std::vector<std::vector<double>> half = beads(0, 0);
   for (std::size_t f = 47; f < kFrames; ++f)
     for (std::size_t k = 0; k < 100; ++k) half[f][k] += k % 10 < 5 ? 5 : 0;
-  EXPECT_TRUE(jumps_of_beads(half, kDiameter).empty());
+  EXPECT_TRUE(jumps_of(half).empty());
 }
 
 TEST(CameraJump, ThePlateLeavesItsSineByAStep) {
@@ -84,17 +91,14 @@ TEST(CameraJump, ASineALostFrameOrAnUnseenPlateAreNone) {
 
 TEST(CameraJump, OneSentenceNamesFrameAndShift) {
   const std::vector<CameraJump> jumps =
-      merged(jumps_of_beads(beads(5, 47), kDiameter), jump_of_plate(plate(4, 47), kFramesPerCycle));
+      merged(jumps_of(beads(5, 47)), jump_of_plate(plate(4, 47), kFramesPerCycle));
   ASSERT_EQ(jumps.size(), 1U);
   const std::string text = in_words(jumps, kFrames);
   EXPECT_NE(text.find("from frame 47 on, plate and beads are shifted by ("), std::string::npos) << text;
   EXPECT_NE(text.find("--frames 0:47 and --frames 47:80"), std::string::npos) << text;
   EXPECT_TRUE(in_words({}, kFrames).empty());
   // Of two bumps, both are named in their order.
-  EXPECT_EQ(merged(jumps_of_beads(beads(5, 60), kDiameter), jump_of_plate(plate(4, 47), kFramesPerCycle))
-                .front()
-                .frame,
-            47U);
+  EXPECT_EQ(merged(jumps_of(beads(5, 60)), jump_of_plate(plate(4, 47), kFramesPerCycle)).front().frame, 47U);
 }
 
 }  // namespace
