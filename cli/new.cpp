@@ -145,8 +145,9 @@ nlohmann::json write_one(const Common& common, NewOptions& o, std::size_t index,
   const twin::CellDraft draft = twin::draft_cell(survey, o.answers);
   for (const auto* sentences : {&survey.notes, &draft.notes})
     for (const std::string& sentence : *sentences) note(common, stack.string() + ": " + sentence);
-  write_text_file(cell, twin::cell_text(draft, survey, kHead + one_line(common.command_line)), cell_file());
+  // The larger file first: on a full disk neither is left.
   imaging::write_png(picture, twin::draw_cell(survey, draft));
+  write_text_file(cell, twin::cell_text(draft, survey, kHead + one_line(common.command_line)), cell_file());
   said += stack.string() + "\n" + table_of(draft, common.verbose);
   for (const twin::NotMeasured& m : survey.missing)
     said += fmt::format("  not measured: {}, because {}; {}\n", m.what, m.why, m.remedy);

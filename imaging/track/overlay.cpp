@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -37,7 +36,7 @@ cv::Mat3b draw_overlay(const cv::Mat& grey, const std::vector<Detection>& beads,
 
 namespace {
 
-constexpr std::streamsize kEndOfPngHeader = 33;
+constexpr std::size_t kEndOfPngHeader = 33;
 
 /// The chunk "Software: twincell" of a PNG (ISO/IEC 15948, 11.3.4.3). It identifies earlier pictures written
 /// by this program.
@@ -63,15 +62,9 @@ void write_png(const std::filesystem::path& png, const cv::Mat& picture) {
   const std::vector<unsigned char> bytes =
       codecs().encode(".png", picture, {cv::IMWRITE_PNG_COMPRESSION, kCompression});
   if (bytes.empty()) throw RunError(png.string() + ": the picture cannot be encoded as PNG.");
-  AtomicPath path(png, Product::picture());
-  std::ofstream out(path.part(), std::ios::binary);
-  const auto* png_bytes = reinterpret_cast<const char*>(bytes.data());
-  out.write(png_bytes, kEndOfPngHeader);
-  out << software_chunk();
-  out.write(png_bytes + kEndOfPngHeader, static_cast<std::streamsize>(bytes.size()) - kEndOfPngHeader);
-  out.close();
-  if (!out) throw RunError(png.string() + ": cannot be written.");
-  path.commit();
+  std::string file(bytes.begin(), bytes.end());
+  file.insert(kEndOfPngHeader, software_chunk());
+  write_text_file(png, file, Product::picture());
 }
 
 void write_overlay(const std::filesystem::path& png, const cv::Mat& grey,

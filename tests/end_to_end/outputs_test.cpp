@@ -294,6 +294,12 @@ TEST(Outputs, TheCauseOfAFailureToWriteIsReported) {
   EXPECT_NE(track.err.find(fs::current_path().string() + ": the temporary file of the located beads"),
             std::string::npos)
       << track.err;
+  // The cell file would fit; without its picture, neither is left.
+  const Ran cell = run_limited(RLIMIT_FSIZE, 5'000, {"new", "frames", "-o", "own.toml", "-q"});
+  EXPECT_EQ(cell.code, 1);
+  EXPECT_NE(cell.err.find("own.png: writing failed (File too large)."), std::string::npos) << cell.err;
+  EXPECT_FALSE(fs::exists("own.toml"));
+  EXPECT_FALSE(fs::exists("own.png"));
 }
 
 TEST(Outputs, AFullDiskUnderTheHelpIsReported) {
