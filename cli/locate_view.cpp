@@ -186,13 +186,10 @@ void LocateView::add(std::int64_t number, const cv::Mat& grey, const imaging::Lo
 }
 
 std::string LocateView::residual_of(const cv::Mat& grey, const imaging::Located& located) const {
-  const imaging::LocatorOptions& of_run = stored_.front().options;
-  std::vector<double> radii = {0.5 * of_run.diameter_px};
-  for (const double d : of_run.other_diameters_px) radii.push_back(0.5 * d);
   std::vector<imaging::Detection> beads = located.beads;
   for (imaging::Detection& b : beads) b.x -= region_.corner().x, b.y -= region_.corner().y;
-  const imaging::EncodedFrame picture =
-      imaging::encoded_residual(grey, imaging::residual_picture(grey, beads, radii));
+  const imaging::EncodedFrame picture = imaging::encoded_residual(
+      grey, imaging::residual_picture(grey, beads, stored_.front().options.radii_px()));
   return analysis::data_uri(picture.type, picture.bytes);
 }
 

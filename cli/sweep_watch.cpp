@@ -10,6 +10,15 @@
 
 namespace twincell::cli {
 
+namespace {
+
+/// A search may end before its last run.
+const char* at_most_of(const sweep::Counts& counts) {
+  return counts.most > counts.known ? "at most " : "";
+}
+
+}  // namespace
+
 SweepWatch::SweepWatch(const Common& common, double seconds)
     : quiet_(common.quiet),
       terminal_(::isatty(STDERR_FILENO) == 1),
@@ -26,7 +35,7 @@ double SweepWatch::time_left() const {
 
 void SweepWatch::expect(const sweep::Counts& counts, double seconds) {
   if (quiet_) return;
-  const char* at_most = counts.most > counts.known ? "at most " : "";
+  const char* at_most = at_most_of(counts);
   if (terminal_) std::fprintf(stderr, "\r\033[K");
   std::fprintf(stderr, "%s\n",
                fmt::format("{}{} open points, {:.3g} particle-steps: {}about {}{}", at_most,
@@ -45,7 +54,7 @@ void SweepWatch::look(const sweep::Counts& counts, double seconds_left) {
                       "Stopped by a signal; finished points are kept, and the same command continues.");
   }
   if (quiet_) return;
-  const char* at_most = counts.most > counts.known ? "at most " : "";
+  const char* at_most = at_most_of(counts);
   std::string line =
       fmt::format("{} of {}{} points done, {} running", counts.done, at_most, counts.most, counts.here);
   if (counts.failed > 0) line += fmt::format(", {} failed", counts.failed);

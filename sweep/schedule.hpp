@@ -35,8 +35,8 @@ struct Counts {
   std::size_t failed = 0;  ///< done, but the run failed
   double work_left = 0;    ///< particle-steps of the known points that are not done
   std::size_t most = 0;    ///< largest number of points, with all runs that searches may still need
-  double most_work =
-      0;  ///< particle-steps of those that are not done; further runs count as the mean of the known
+  /// Particle-steps of those that are not done; a run that is not known yet counts as the mean of the known.
+  double most_work = 0;
 };
 
 /// Points at one set of axis values: part of a grid, or one search.

@@ -213,8 +213,7 @@ BeadFrames locate_beads(imaging::FrameSource& frames, const imaging::LocatorOpti
   const imaging::LocatorOptions locator = imaging::configure_locator(ahead, options, threads).locator;
   constexpr std::int64_t kAspectFrames = 12;
   imaging::RimAspect aspect;
-  std::vector<double> radii_px = {0.5 * locator.diameter_px};
-  for (const double other : locator.other_diameters_px) radii_px.push_back(0.5 * other);
+  const std::vector<double> radii_px = locator.radii_px();
   std::vector<std::vector<std::size_t>> size_of;
   imaging::locate_stack(
       ahead, locator, threads,

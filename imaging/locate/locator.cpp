@@ -81,6 +81,12 @@ class Stopwatch {
 
 }  // namespace
 
+std::vector<double> LocatorOptions::radii_px() const {
+  std::vector<double> radii = {0.5 * diameter_px};
+  for (const double other : other_diameters_px) radii.push_back(0.5 * other);
+  return radii;
+}
+
 void LocatorOptions::check() const {
   auto range = [](const char* key, double value, double lower, double upper) {
     require_range(Where{.file = {}, .key = key}, value, lower, upper);

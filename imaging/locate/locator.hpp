@@ -38,6 +38,8 @@ struct LocatorOptions {
   /// With DiscModel::shared_profile, the radii are those of the rims. false: relative to diameter_px, as the
   /// tests of hypotheses compare them. The fit itself determines profile and radii up to a common stretch.
   bool rim_radii = true;
+  /// Of all sizes, that of diameter_px first.
+  [[nodiscard]] std::vector<double> radii_px() const;
   /// \throws ConfigError naming the option and its bound
   void check() const;
 };

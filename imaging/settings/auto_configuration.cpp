@@ -20,6 +20,7 @@
 #include "imaging/settings/find_contrast.hpp"
 #include "imaging/settings/hypothesis_test.hpp"
 #include "imaging/settings/larger_discs.hpp"
+#include "imaging/settings/nearest_distances.hpp"
 #include "imaging/settings/paired_spots.hpp"
 #include "imaging/settings/polydisperse_settings.hpp"
 #include "imaging/settings/profile_model_selection.hpp"
@@ -295,21 +296,6 @@ std::optional<FoundSettings> best_not_round(const SettingsChoice& choice) {
   return best->settings;
 }
 
-/// Distance of each disc from the nearest other one, px, ascending; of some, if there are many.
-std::vector<double> nearest_distances(const std::vector<Detection>& beads) {
-  constexpr std::size_t kMost = 500;
-  const std::size_t stride = 1 + beads.size() / kMost;
-  std::vector<double> nearest;
-  for (std::size_t k = 0; k < beads.size() && beads.size() > 1; k += stride) {
-    double least = HUGE_VAL;
-    for (const Detection& o : beads)
-      if (&o != &beads[k]) least = std::min(least, std::hypot(o.x - beads[k].x, o.y - beads[k].y));
-    nearest.push_back(least);
-  }
-  std::sort(nearest.begin(), nearest.end());
-  return nearest;
-}
-
 /// The part of a frame around a disc, in which there are other discs too.
 cv::Mat region_around(const cv::Mat& frame, const LargerDisc& disc) {
   constexpr double kWider = 2;  // than the disc
@@ -475,14 +461,15 @@ class SettingsSearch {
   /// small ones, spots between the beads may have been found too, which are nearer.
   [[nodiscard]] SettingsChoice with_wider_profiles(const SettingsChoice& choice) const {
     constexpr double kRatio = 1.25, kSmall_px = 6, kOfSmall_px = 12, kTouching = 1.1;
-    constexpr std::size_t kMost = 5;
+    constexpr std::size_t kMost = 5, kNeighbours = 500;  // profiles; discs whose neighbours are searched
     if (choice.tried.empty() || others_excluded_) return choice;
     const TriedSettings& chosen = choice.tried.front();
     const FoundSettings& of = chosen.settings;
     if (!of.bright || !of.other_diameters_px.empty() || of.method == kEdgeRefiner.word ||
         of.method == kOverlappingRefiner.word)
       return choice;
-    const std::vector<double> nearest = nearest_distances(locate(grey_, completed(of, given_)).beads);
+    const std::vector<double> nearest =
+        nearest_distances(locate(grey_, completed(of, given_)).beads, kNeighbours);
     if (nearest.empty()) return choice;
     const double widest =
         std::max(kTouching * nearest[nearest.size() / 2], chosen.rim_px < kSmall_px ? kOfSmall_px : 0);

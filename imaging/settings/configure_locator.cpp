@@ -14,6 +14,7 @@
 #include "imaging/refine/picture_evidence.hpp"
 #include "imaging/settings/auto_configuration.hpp"
 #include "imaging/settings/find_contrast.hpp"
+#include "imaging/settings/nearest_distances.hpp"
 #include "imaging/settings/settings_choice.hpp"
 
 namespace twincell::imaging {
@@ -35,11 +36,10 @@ std::vector<double> radii_of(const std::vector<Detection>& beads) {
   return radii;
 }
 
-/// The settings with a size that is known, unless they then locate fewer discs.
-LocatorOptions at_known_size(const cv::Mat& frame, LocatorOptions settled) {
-  LocatorOptions known = settled;
-  known.size_known = true;
-  return locate(frame, known).beads.size() >= locate(frame, settled).beads.size() ? known : settled;
+/// The settings with a size that is known; nothing if they then locate fewer discs than `least`.
+std::optional<LocatorOptions> at_known_size(const cv::Mat& frame, LocatorOptions settled, std::size_t least) {
+  settled.size_known = true;
+  return locate(frame, settled).beads.size() >= least ? std::optional(std::move(settled)) : std::nullopt;
 }
 
 /// The settings with the diameter of the rims, unless they then locate fewer discs. A profile describes discs
@@ -47,15 +47,12 @@ LocatorOptions at_known_size(const cv::Mat& frame, LocatorOptions settled) {
 LocatorOptions at_rim(const cv::Mat& frame, LocatorOptions settled, const std::vector<Detection>& beads) {
   // The rim may be that of a highlight, far inside of discs that fade outwards.
   constexpr double kFarInside = 0.6;
-  if (2 * upper_median(radii_of(beads)) < kFarInside * settled.diameter_px) {
-    LocatorOptions known = settled;
-    known.size_known = true;
-    if (locate(frame, known).beads.size() >= beads.size()) return known;
-  }
+  const double rim_px = 2 * upper_median(radii_of(beads));
+  if (rim_px < kFarInside * settled.diameter_px)
+    if (auto known = at_known_size(frame, settled, beads.size())) return *known;
   LocatorOptions rim = settled;
-  rim.diameter_px = std::clamp(2 * upper_median(radii_of(beads)), 3.0, 400.0);
-  rim.size_known = true;
-  return locate(frame, rim).beads.size() >= beads.size() ? rim : settled;
+  rim.diameter_px = std::clamp(rim_px, 3.0, 400.0);
+  return at_known_size(frame, std::move(rim), beads.size()).value_or(std::move(settled));
 }
 
 /// The settings, with pale discs if the frame shows a second population of the beads, as of pale tracers: at
@@ -90,8 +87,8 @@ LocatorOptions with_spread_of_sizes(const cv::Mat& frame, const LocatorOptions& 
   if (model_of(settled.refine) != DiscModel::plain) return settled;
   const std::vector<Detection> beads = locate(frame, settled).beads;
   if (beads.size() < kMinBeads) return settled;
-  std::vector<double> sizes = {0.5 * settled.diameter_px}, relative;
-  for (const double other : settled.other_diameters_px) sizes.push_back(0.5 * other);
+  const std::vector<double> sizes = settled.radii_px();
+  std::vector<double> relative;
   for (const Detection& b : beads) relative.push_back(b.radius / sizes[nearest_size(b.radius, sizes)]);
   const double middle = upper_median(relative);
   LocatorOptions wide = settled;
@@ -100,21 +97,7 @@ LocatorOptions with_spread_of_sizes(const cv::Mat& frame, const LocatorOptions& 
   return locate(frame, wide).beads.size() > beads.size() ? wide : settled;
 }
 
-/// Distance of each disc from the nearest other one, px, ascending; of some, if there are many.
-std::vector<double> distances_of_neighbours(const std::vector<Detection>& beads) {
-  constexpr std::size_t kMost = 2000;
-  const std::size_t stride = 1 + beads.size() / kMost;
-  std::vector<double> nearest;
-  for (std::size_t k = 0; k < beads.size(); k += stride) {
-    const Detection& b = beads[k];
-    double least = HUGE_VAL;
-    for (const Detection& o : beads)
-      if (&o != &b) least = std::min(least, std::hypot(o.x - b.x, o.y - b.y));
-    nearest.push_back(least);
-  }
-  std::sort(nearest.begin(), nearest.end());
-  return nearest;
-}
+constexpr std::size_t kNeighbours = 2000;  // discs whose neighbours are searched
 
 /// The smallest distance of two discs, px, if they may be the highlights of larger beads: that of a tenth of
 /// them is more than two diameters, and they are less than 6 px wide or most have a neighbour at that
@@ -123,7 +106,7 @@ double distance_of_parts(const std::vector<Detection>& beads, const LocatorOptio
   constexpr std::size_t kMinDiscs = 20;
   constexpr double kFew = 0.1, kDiameters = 2, kSmall_px = 6, kTouching = 1.1;
   if (beads.size() < kMinDiscs || !settled.other_diameters_px.empty()) return 0;
-  const std::vector<double> nearest = distances_of_neighbours(beads);
+  const std::vector<double> nearest = nearest_distances(beads, kNeighbours);
   const auto n = static_cast<double>(nearest.size());
   const double closest = nearest[static_cast<std::size_t>(kFew * n)], half = nearest[nearest.size() / 2];
   if (closest <= kDiameters * settled.diameter_px) return 0;
@@ -155,7 +138,7 @@ double width_by_neighbours(const cv::Mat& frame, const std::vector<Detection>& b
   constexpr double kMost = 0.8, kAlike = 0.03;  // of the discs; of their distance
   constexpr double kWider = 1.15;
   if (beads.size() < kMinDiscs || !settled.other_diameters_px.empty()) return 0;
-  const std::vector<double> nearest = distances_of_neighbours(beads);
+  const std::vector<double> nearest = nearest_distances(beads, kNeighbours);
   const double typical = nearest[nearest.size() / 2];
   const auto alike = std::count_if(nearest.begin(), nearest.end(),
                                    [&](double r) { return std::abs(r - typical) < kAlike * typical; });
@@ -226,7 +209,8 @@ LocatorOptions settled_on(const cv::Mat& frame, const SettingsChoice& choice, co
 LocatorConfiguration adapted(const cv::Mat& frame, ChoiceOnFrame chosen, const LocatorOptions& given) {
   LocatorOptions settled = settled_on(frame, chosen.choice, given);
   if (chosen.choice.beads_of_pairs) {
-    settled = at_known_size(frame, std::move(settled));  // the steepest rims are those of the highlights
+    // The steepest rims are those of the highlights.
+    if (auto known = at_known_size(frame, settled, locate(frame, settled).beads.size())) settled = *known;
   } else if (given.diameter_px <= 0 && model_of(settled.refine) == DiscModel::shared_profile) {
     const std::vector<Detection> beads = locate(frame, settled).beads;
     settled = at_rim(frame, std::move(settled), beads);

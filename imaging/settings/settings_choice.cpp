@@ -114,8 +114,7 @@ TriedSettings try_one(const ExaminedRegion& region, const LocatorOptions& given,
   const LocatedBetweenWalls found = locate_between_walls(region.picture, options);
   const cv::Mat1b& walls = found.walls;
   const std::vector<Detection>& beads = found.located.beads;
-  std::vector<double> radii = {0.5 * options.diameter_px};
-  for (const double d : options.other_diameters_px) radii.push_back(0.5 * d);
+  const std::vector<double> radii = options.radii_px();
   const PictureEvidence evidence =
       picture_evidence(region.picture, beads, radii, region.neighbour_radius_px, walls);
   TriedSettings tried{settings, evidence.total, beads.size(), found.located.rim * settings.diameter_px};
