@@ -97,7 +97,7 @@ std::vector<Target> targets_of(const Packings& all) {
   targets.push_back(lines);
   targets.push_back(grains);
   targets.push_back(
-      {"initial bed of the experiment", "the same look", "", Verdict::absent,
+      {"initial bed of the experiment", "the same appearance", "", Verdict::absent,
        "its positions are printed in the figure alone; `match` makes a bed from a stack of frames"});
   return targets;
 }

@@ -42,7 +42,8 @@ std::vector<Target> targets_of(const Packings& all) {
       t.not_counted = "it describes how the bed is made";
       if (std::string_view(o.start) == kB.start)
         t.reason =
-            "a width of 20 sigma is no multiple of the rows' distance, so that this crystal has a seam of "
+            "a width of 20 sigma is not a multiple of the distance of the rows, so this crystal has a seam "
+            "of "
             "dislocations";
     }
     targets.push_back(t);
@@ -140,7 +141,7 @@ analysis::Figure figure_of(const Packings& all) {
       "(a), (b) Crystals in the two orientations at the side wall and the floor. (c) Of the ordered beads "
       "(psi6 > 0.9) of each random bed, beds in the order of their share of A, the shares whose close-packed "
       "rows are within 10 degrees of the "
-      "floor (A) and of the side walls (B); lattices that lie anyhow would give a third each (dashed). The "
+      "floor (A) and of the side walls (B); randomly oriented lattices would give a third each (dashed). The "
       "paper's random beds favour A. Form of Fortini & Huang 2015, Fig. 2.";
   return f;
 }

@@ -157,8 +157,8 @@ std::vector<Target> targets_of(const Values& values, const Size& size) {
     if (integrator == "split" && size.split.size() == 1) continue;
     for (const Quantity& q : kQuantities)
       for (const std::string& start : kStarts) {
-        Target t{fmt::format("{} of {} beds does not hang on the step: {}, n = {:g}", q.name, words_of(start),
-                             integrator, n),
+        Target t{fmt::format("{} of {} beds does not depend on the step: {}, n = {:g}", q.name,
+                             words_of(start), integrator, n),
                  fmt::format("that of split, n = {:g}, within {:g} %{}", finest, 100 * kTolerance,
                              q.relative ? "" : fmt::format(" or {:g}", kFloor)),
                  "", Verdict::absent, ""};

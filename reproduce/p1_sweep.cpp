@@ -279,7 +279,7 @@ StrengthSweeps strength_sweeps(const Request& request, const std::string& keys, 
   all.runs_text = runs_text_of(all, size.cycles);
   all.conditions = p1_conditions({kHeights.front(), "crystal_a", size.cycles, 10, keys});
   all.conditions.emplace_back(
-      "T_g* is a time average, from 400 samples a cycle, which does not hang on the phases of the frames");
+      "T_g* is a time average, from 400 samples a cycle, which does not depend on the phases of the frames");
   std::vector<int> measured;
   for (const HeightSweeps& height : all.heights) measured.push_back(height.layers);
   all.conditions.push_back(
