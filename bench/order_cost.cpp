@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/neighbours/bond_orientation.hpp"
+#include "analysis/neighbours/bond_orientational_order.hpp"
 #include "analysis/neighbours/voronoi.hpp"
 #include "core/cpu_clock.hpp"
 

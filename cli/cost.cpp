@@ -83,7 +83,7 @@ Measured measure(const CostOptions& options, const Common& common) {
 nlohmann::json as_json(const StepSetting& s) {
   return {{"integrator", s.integrator}, {"n", s.n}, {"k_n", s.k_n}};
 }
-nlohmann::json as_json(const sim::PhaseSpread& s) {
+nlohmann::json as_json(const sim::EntryPhaseSpread& s) {
   return {{"mean", s.mean}, {"rms", s.rms}, {"max", s.largest}};
 }
 nlohmann::json as_json(const StepSetting& s, const sim::ImpactErrors& e) {
@@ -368,8 +368,7 @@ void add_cost(CLI::App& program, Common& common) {
                   "Requested accuracy, for which the cheapest setting (sim, locate) or the time (gas) is "
                   "printed. sim: largest error of e, 1e-12 to 1, default 1e-3; gas: relative error of T_z, "
                   "1e-12 to 1, default 0.01; locate: rms error, px, 1e-6 to 100, default 0.01");
-  verb.add_flag("--quick", options->quick,
-                "Measure fewer settings and time each only once; takes some seconds");
+  verb.add_flag("--quick", options->quick, "Measure fewer settings, and time each only once");
   verb.callback([options, &common] { run(*options, common); });
 }
 

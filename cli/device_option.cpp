@@ -15,10 +15,11 @@ constexpr int kBeds = 256;
 
 CLI::Option* add_device_option(CLI::App& verb, std::string& device) {
   return verb
-      .add_option("--device", device,
-                  "Run the beds on a device, with the same results: gpu, a graphics card with many beds at "
-                  "once (--threads, default 256); host, the same kernel on the processor, to test it "
-                  "(docs/sweeps.md)")
+      .add_option(
+          "--device", device,
+          "Run the beds on a device, with the same results. gpu: a graphics card, with as many beds at "
+          "once as --threads states, by default 256; host: the same kernel on the processor, to test "
+          "it (docs/gpu.md)")
       ->check(CLI::IsMember({"gpu", "host"}));
 }
 

@@ -159,7 +159,7 @@ void run(ImportOptions& o, const Common& common) {
   for (const std::string& doubt : implausible_numbers(shaken_cell(info.scale, info.drive)))
     note(common, doubt);
   for (const std::string& doubt : watched.doubts().sentences()) note(common, doubt + ".");
-  // Some programs count from 1, which the summary says; gaps in the numbers are no such habit.
+  // Some programs count from 1, which the summary says; gaps in the numbers have other causes.
   const std::string numbers = new_numbers(source.ids());
   const bool gaps = !numbers.empty() && source.ids().back() - source.ids().front() + 1 !=
                                             static_cast<std::int64_t>(source.ids().size());
@@ -239,7 +239,7 @@ void add_cell_options(CLI::App& verb, ImportOptions& o) {
   ForeignOptions& l = o.foreign;
   verb.add_option("--cell-origin", o.origin,
                   "Lower left inside corner of the cell, with the plate at its mean height: x y [z]; "
-                  "default: 0, along a period its beginning")
+                  "default: 0, along a periodic axis the lower end of the box")
       ->expected(2, 3)
       ->delimiter(',');
   verb.add_option("--cell-width", l.width,
@@ -262,9 +262,9 @@ void add_drive_options(CLI::App& verb, ForeignOptions& l) {
   verb.add_option("--frames-per-cycle", l.phases_per_cycle,
                   "Frames per drive cycle; 0 (default): not phase-locked")
       ->check(CLI::Range(0, 1'000'000));
-  verb.add_option(
-          "--phase-of-step-zero", l.phase_of_step_zero,
-          "Drive phase at step 0, as a fraction of a cycle; 0.75 for a wall that wiggles from step 0 on")
+  verb.add_option("--phase-of-step-zero", l.phase_of_step_zero,
+                  "Drive phase at step 0, as a fraction of a cycle; 0.75 for a wall with LAMMPS's 'wiggle' "
+                  "from step 0 on")
       ->capture_default_str();
 }
 

@@ -16,14 +16,14 @@
 #include <utility>
 #include <vector>
 
-#include "core/assignments.hpp"
 #include "core/cancellation.hpp"
 #include "core/error.hpp"
 #include "core/escape.hpp"
 #include "core/json_text.hpp"
+#include "core/key_assignments.hpp"
 #include "core/output_rules.hpp"
 #include "core/temporary_files.hpp"
-#include "core/text_columns.hpp"
+#include "core/terminal_text.hpp"
 
 namespace twincell::cli {
 
@@ -169,7 +169,7 @@ CLI::App& add_verb(CLI::App& program, Common& common, const std::string& name, c
   CLI::App& verb = *program.add_subcommand(name, summary);
   verb.footer("Example:\n  " + example);
   verb.add_flag("--json", common.json, "Print the result as one JSON document instead of text");
-  verb.add_flag("-q,--quiet", common.quiet, "Print nothing but errors (with --json: and the document)");
+  verb.add_flag("-q,--quiet", common.quiet, "Print only errors (with --json also the document)");
   verb.add_flag("-v,--verbose", common.verbose, "Print every detail; this verb always does");
   verb.add_option("--threads", common.threads,
                   "Number of threads; 0 (default): automatic, at most one per core")

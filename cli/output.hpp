@@ -30,7 +30,7 @@ struct Output {
 /// Options that every verb has.
 struct Common {
   bool json = false;                  ///< print the result as one JSON document
-  bool quiet = false;                 ///< print nothing but errors, and the document of --json
+  bool quiet = false;                 ///< print only errors, and the document of --json
   bool verbose = false;               ///< print every detail of the result
   int threads = 0;                    ///< number of threads; 0: automatic, at most one per core
   std::optional<std::uint64_t> seed;  ///< of the random numbers; absent: the default of the verb

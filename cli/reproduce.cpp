@@ -335,11 +335,11 @@ void add_reproduce(CLI::App& program, Common& common) {
                                   kDefaultMinutes, kDefaultHours))
           ->check(CLI::Range(0.001, 1e6));
   verb.add_flag("--all", options->all,
-                "Reproduce all figures and tables within the budget, which is shared among them by their "
-                "worth, and write papers.md, the page about them; the same command continues");
+                "Reproduce all figures and tables within the budget, which is divided among them by fixed "
+                "weights, and write papers.md, the page about them; the same command continues");
   verb.add_option("--stored", options->stored,
                   "NAME.json of an earlier call (with --all: a folder of them): nothing is simulated; only "
-                  "targets, verdicts and figures are made anew from its runs");
+                  "targets, verdicts and figures are made again from its runs");
   verb.add_option("--runs", options->runs,
                   "Folder of the runs that several figures share; default: next to the folder of the figure");
   verb.add_option(

@@ -495,8 +495,9 @@ void Config::refuse_unknown_keys() const {
   walk(shared_->table, "", shared_->asked, [&](const std::string& key, const toml::node& node) {
     const std::string nearest = nearest_key(key, {shared_->asked.begin(), shared_->asked.end()});
     if (nearest == key)
-      throw ConfigError(shared_->where_of(node, key),
-                        "is a name in quotes, in which a point separates nothing; write it without quotes.");
+      throw ConfigError(
+          shared_->where_of(node, key),
+          "is a name in quotes, in which a point does not separate table and key; write it without quotes.");
     throw ConfigError(shared_->where_of(node, key),
                       nearest.empty() ? "there is no such key" + keys_of_table(key, shared_->asked) + "."
                                       : fmt::format("there is no such key; did you mean '{}'?", nearest));

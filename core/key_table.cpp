@@ -6,7 +6,7 @@
 
 #include "core/config.hpp"
 #include "core/error.hpp"
-#include "core/text_columns.hpp"
+#include "core/terminal_text.hpp"
 
 namespace twincell {
 

@@ -12,8 +12,8 @@
 
 namespace twincell {
 
-/// Text of a table without its byte order mark. The line ends \r\n and \r are converted to \n.
-/// \throws InputError as read_text_file, and for UTF-16
+/// Text of a table without its byte order mark. Line ends \r\n and \r are converted to \n.
+/// \throws InputError as read_text_file, for UTF-16, and for text with zero bytes
 std::string read_table_text(const std::filesystem::path& file);
 
 /// Fields of a line of comma-separated values, as views into it, without the spaces around them. A field in
@@ -24,9 +24,9 @@ std::vector<std::string_view> fields_of(std::string_view line);
 /// The same as strings.
 std::vector<std::string> field_texts(std::string_view line);
 
-/// Column with the name of the first one. pandas writes the index of a table as the first column, and an
-/// index that is also a column has its name: such a column may occur twice, with equal values
-/// (require_same_index).
+/// The further column that has the name of the first one; nullopt if there is none. pandas writes the index
+/// of a table as the first column. If a column of the table has the name of the index, the name occurs twice,
+/// with equal values (require_same_index).
 std::optional<std::size_t> twin_of_index(const std::vector<std::string>& names);
 
 /// \param twin twin_of_index of the names

@@ -122,8 +122,8 @@ std::unique_ptr<imaging::FrameSource> source_of(const py::object& stack, std::st
     // A picture of 3 or 4 columns has no bead.
     if (array.ndim() == 3 && (array.shape(2) == 3 || array.shape(2) == 4))
       throw ConfigError({.file = {}, .key = "stack"},
-                        fmt::format("has the shape ({}, {}, {}), as a picture in colours; give one of the "
-                                    "colours or their mean.",
+                        fmt::format("has the shape ({}, {}, {}), which is that of a colour picture; give one "
+                                    "channel or the mean of the channels.",
                                     array.shape(0), array.shape(1), array.shape(2)));
     if (array.ndim() == 2) {
       py::list one;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <complex>
 
-#include "analysis/neighbours/bond_orientation.hpp"
+#include "analysis/neighbours/bond_orientational_order.hpp"
 #include "analysis/neighbours/neighbours.hpp"
 #include "analysis/neighbours/voronoi.hpp"
 #include "analysis/observable/observable.hpp"
@@ -188,7 +188,8 @@ void bind_bond_order(py::module_& module) {
       },
       py::arg("points"), py::arg("box") = py::none(), py::arg("neighbours") = "cutoff",
       py::arg("cutoff") = kCutoff, py::arg("cell_radius") = analysis::kCellRadius,
-      (summary_text("analysis/neighbours/bond_orientation.hpp", "bond_order") + bonds_text()).c_str());
+      (summary_text("analysis/neighbours/bond_orientational_order.hpp", "bond_order") + bonds_text())
+          .c_str());
 }
 
 void bind_hexatic_order(py::module_& module) {

@@ -7,8 +7,8 @@
 #include <atomic>
 #include <set>
 
-#include "core/assignments.hpp"
 #include "core/error.hpp"
+#include "core/key_assignments.hpp"
 #include "python/trajectory.hpp"
 #include "sim/accuracy/plan_json.hpp"
 #include "sim/scene/make_plan.hpp"

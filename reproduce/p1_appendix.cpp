@@ -108,7 +108,7 @@ double duration_of(const std::vector<CollisionState>& states) {
 /// Targets, numbers and line of the table for one contact.
 /// \param e error of e_n in simulated collisions \param t_c of a simulated collision, t_0
 void add_contact(Reproduction& r, json& measured, const Contact& c, const sim::LinearCollision& form,
-                 const sim::PhaseSpread& e, double t_c) {
+                 const sim::EntryPhaseSpread& e, double t_c) {
   const bool pair = c.m_eff < 1;
   const std::string kind = c.name;
   r.targets.push_back(

@@ -171,8 +171,8 @@ std::vector<std::string> TrajectoryDoubts::sentences() const {
                     plural(doubled_, "bead"), doubled_step_, doubled_ == 1 ? "lies" : "lie", kSameBead));
   if (exchanges_ > 0)
     doubts.push_back(fmt::format(
-        "between the frames of the steps {} and {}, {} take the places of others{}: the numbers of the beads "
-        "are those of a row of the file and not of a bead, or the links are wrong",
+        "between the frames of the steps {} and {}, {} take the places of others{}: the numbers count "
+        "the rows of a frame instead of beads, or the links are wrong",
         exchange_[0], exchange_[1], plural(exchanged_, "bead"),
         exchanges_ > 1 ? fmt::format(", and so between {} pairs of frames", exchanges_) : ""));
   if (jumps_ > 0)

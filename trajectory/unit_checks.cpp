@@ -22,9 +22,8 @@ std::vector<std::string> implausible_numbers(const ShakenCell& cell) {
   const auto check = [&](const char* what, const std::optional<double>& value, double low, double high,
                          const char* unit, const char* question) {
     if (!value || (*value >= low && *value <= high)) return true;
-    doubts.push_back(
-        fmt::format("{} is {:.3g}{}, outside of {:g} to {:g}{}, which is usual for shaken beads; {}", what,
-                    *value, unit, low, high, unit, question));
+    doubts.push_back(fmt::format("{} is {:.3g}{}, but {:g} to {:g}{} is usual for shaken beads; {}", what,
+                                 *value, unit, low, high, unit, question));
     return false;
   };
   check("the bead diameter", cell.sigma_mm, 0.02, 100, " mm", "is it in mm?");

@@ -20,7 +20,7 @@ struct ShakenCell {
   std::optional<double> amplitude;     ///< A/sigma
 };
 
-/// The numbers of a drive in reduced units.
+/// The numbers of a cell from its scale and its drive, which is in reduced units.
 ShakenCell shaken_cell(const Scale& scale, const std::optional<Drive>& drive);
 
 /// One sentence for each number outside the range that shaken beads have: diameters of 0.02 to 100 mm,

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "analysis/neighbours/bond_orientation.hpp"
+#include "analysis/neighbours/bond_orientational_order.hpp"
 #include "analysis/observable/observable.hpp"
 #include "core/error.hpp"
 

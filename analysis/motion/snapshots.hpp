@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "analysis/neighbours/bond_orientation.hpp"
+#include "analysis/neighbours/bond_orientational_order.hpp"
 #include "trajectory/trajectory.hpp"
 
 namespace twincell::analysis {

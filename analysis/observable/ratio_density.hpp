@@ -11,7 +11,7 @@
 
 namespace twincell::analysis {
 
-/// Probability density of x / <x>, <x> the mean over a frame; mean of the densities of the frames.
+/// Probability density of x/<x>, where <x> is the mean over a frame; averaged over the frames.
 class RatioDensity {
  public:
   /// \param range largest ratio
@@ -23,9 +23,9 @@ class RatioDensity {
   void add(std::span<const double> values, double mean);
 
   /// NAME_density with _low and _high (array_with_interval.hpp), and NAME_ratio, the centres of the bins.
-  /// \param what the ratio in words
-  /// \param which the values that count
-  /// \param none why there is none
+  /// \param what the quantity x, in words
+  /// \param which which values of x count, in words
+  /// \param none why the results are absent, if no frame was added
   [[nodiscard]] std::vector<Result> results(const std::string& name, const std::string& what,
                                             const std::string& which, const std::string& source,
                                             const std::string& none) const;

@@ -2,12 +2,12 @@
 /// \file
 /// Bond order of the bed: q6, psi6 and psi4 of its beads.
 
-#include "analysis/neighbours/bond_orientation.hpp"
+#include "analysis/neighbours/bond_orientational_order.hpp"
 #include "analysis/observable/observable.hpp"
 
 namespace twincell::analysis {
 
-/// Bond order with the neighbour rule of the analysis; definitions in bond_orientation.hpp. Results:
+/// Bond order with the neighbour rule of the analysis; definitions in bond_orientational_order.hpp. Results:
 ///
 /// - q6, psi6, psi4: scalars, mean over beads and frames
 /// - hexagonal_fraction: scalar, share of the beads with Structure::hexagonal, mean over frames

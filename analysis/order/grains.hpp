@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "analysis/neighbours/bond_orientation.hpp"
+#include "analysis/neighbours/bond_orientational_order.hpp"
 #include "analysis/neighbours/voronoi.hpp"
 #include "analysis/observable/observable.hpp"
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "analysis/neighbours/bond_orientation.hpp"
+#include "analysis/neighbours/bond_orientational_order.hpp"
 #include "analysis/neighbours/voronoi.hpp"
 #include "analysis/report/colours.hpp"
 #include "analysis/report/figure_style.hpp"

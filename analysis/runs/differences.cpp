@@ -10,8 +10,8 @@
 #include <numbers>
 
 #include "analysis/motion/tracers.hpp"
-#include "analysis/neighbours/bond_orientation.hpp"
-#include "analysis/runs/length_power.hpp"
+#include "analysis/neighbours/bond_orientational_order.hpp"
+#include "analysis/runs/scaling_exponents.hpp"
 #include "analysis/statistics/statistics.hpp"
 #include "core/plural.hpp"
 

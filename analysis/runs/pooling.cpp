@@ -16,7 +16,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "analysis/neighbours/bond_orientation.hpp"
+#include "analysis/neighbours/bond_orientational_order.hpp"
 #include "analysis/order/lattice_orientation.hpp"
 #include "analysis/runs/bed_keys.hpp"
 #include "analysis/runs/phase_diagram.hpp"

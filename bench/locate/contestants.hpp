@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The circle finders that are compared: this library with each finder and refinement, and OpenCV's two Hough
-/// transforms.
+/// The circle finders that are compared: this library with each finder and the refiners `exact` and `fast`,
+/// and OpenCV's two Hough transforms.
 
 #include <functional>
 #include <opencv2/core.hpp>
@@ -12,6 +12,7 @@
 
 namespace twincell::bench {
 
+/// A circle finder with its settings.
 struct Contestant {
   std::string name;
   /// Finds the centres in an 8-bit frame of a case, given its nominal diameters.
@@ -28,8 +29,8 @@ struct HoughSettings {
   double smooth = 0;           ///< Gaussian blur applied first, px of the original frame
   double edge = 100;           ///< param1
   double votes = 100;          ///< param2
-  double apart = 0.8;          ///< minDist, in units of the least diameter
-  double radius_slack = 0.15;  ///< minRadius = least radius (1 - this), maxRadius = largest (1 + this)
+  double apart = 0.8;          ///< minDist, in units of the smallest diameter
+  double radius_slack = 0.15;  ///< minRadius = smallest radius (1 - this), maxRadius = largest (1 + this)
 };
 std::vector<cv::Point2d> opencv_hough(const cv::Mat1b& frame, const imaging::rendered::Case& of,
                                       const HoughSettings& settings);

@@ -68,9 +68,9 @@ struct BounceFit {
 
 /// Fits all flights together by least squares, after a fit with Cauchy's loss has identified the outliers.
 /// Errors of e come from the joint covariance, because neighbouring impacts share a flight.
-/// \throws InputError if fewer than two flights of at least 6 samples are found, or if the result cannot
-/// describe a bouncing bead: gravity not above 0, e_n above 1 or below 0 by more than three errors, an error
-/// of e_n above 0.3
+/// \throws InputError if fewer than two flights of at least 6 samples are found, if the heights do not follow
+/// free flights, or if the result cannot describe a bouncing bead: gravity not above 0, an impact without
+/// approach, e_n above 1 or below 0 by more than three errors, an error of e_n above 0.3
 BounceFit fit_bounces(std::vector<BounceSample> samples, const BounceOptions& options = {});
 
 }  // namespace twincell::calibration

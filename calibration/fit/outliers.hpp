@@ -1,10 +1,10 @@
 #pragma once
 /// \file
-/// Which residuals of a robust fit are outliers.
+/// Threshold of the outliers of a robust fit.
 
 namespace twincell::calibration {
 
-/// Residuals beyond it, in robust standard deviations, are outliers.
+/// Larger residuals are outliers; in robust standard deviations (robust_spread of median.hpp).
 inline constexpr double kWorstSigma = 4;
 
 }  // namespace twincell::calibration

@@ -11,8 +11,9 @@
 /// overlap; this single lookup settles most beads. The remaining tracks are assigned at minimum total cost
 /// (assignment.hpp). The cost margin to the second-best assignment determines which links are ambiguous.
 ///
-/// A frame in which neighbours separate is matched again, all beads at once (collective_matching.hpp), and
-/// then a second time with the next frame as evidence: a bead that is hit once between two frames covers a
+/// A frame in which neighbours separate, or with a link that remains ambiguous, is matched again, all beads
+/// at once (collective_matching.hpp). If beads follow ballistic paths and the next frame is given, the frame
+/// is then matched with the next frame as evidence. A bead that collides once between two frames covers a
 /// fraction of the step that free flight would repeat, and the remaining fraction of the step implied by its
 /// motion to the next frame.
 ///

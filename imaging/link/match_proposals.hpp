@@ -11,13 +11,13 @@
 
 namespace twincell::imaging {
 
-/// The matching that is improved.
+/// The matching that the proposals improve.
 struct PresentMatching {
   MatchSolution detection_of;          ///< of each bead; Assignment::kAlone: unassigned
   std::vector<std::int64_t> owner_of;  ///< bead of each detection; Assignment::kAlone: unused
 
   explicit PresentMatching(std::size_t detections) : owner_of(detections, Assignment::kAlone) {}
-  /// Replaces the matching, and finds the owners.
+  /// Replaces the matching and updates owner_of.
   void adopt(MatchSolution solution);
   /// Sum of all costs, log-odds.
   [[nodiscard]] double total(const MatchProblem& problem) const {
@@ -25,8 +25,10 @@ struct PresentMatching {
   }
 };
 
-/// Proposal grown from one bead. Next is always the bead with the most settled neighbours and the detection
-/// closest to the position that their mean step predicts.
+/// Grows a proposal from one bead. The neighbours of assigned beads follow one at a time: each takes the free
+/// detection closest to the position that the mean step of its assigned neighbours predicts. The bead with
+/// the shortest distance comes first; each assigned neighbour, up to four, counts as a shorter distance.
+///
 /// \pre bead `seed` is assigned in `present`
 MatchSolution grow_proposal(const MatchProblem& problem, const MatchSolution& present, std::size_t seed);
 

@@ -3,9 +3,9 @@
 /// A camera, or a cell, that is bumped during a film: from one frame to the next, all that the picture shows
 /// is shifted, and stays so.
 ///
-/// Two witnesses that need no links and no phases. Sideways: the beads between the side walls, of which some
-/// move to either side in any frame, but never all together. Upwards: the plate, which leaves its sine by a
-/// step.
+/// Two signs show it without links or phases. Sideways: all beads between the side walls shift together,
+/// whereas in any other frame some move to either side. Upwards: the height of the plate departs from its
+/// sine by a step.
 
 #include <array>
 #include <cstddef>

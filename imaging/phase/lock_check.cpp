@@ -27,10 +27,10 @@ constexpr const char* kCure =
                     fmt::format("is {}, but {}; {}.", table.frames_per_cycle, why, kCure));
 }
 
-/// Accepts ticks in which frames are missing or doubled, unless they are too many. \param witness "the plate"
+/// Accepts ticks in which frames are missing or doubled, unless they are too many. \param source "the plate"
 /// \param out_of_lock frames whose ticks are not used
 void accept(PhaseTable& table, std::span<const std::int64_t> ticks, std::span<const FrameStretch> out_of_lock,
-            const std::string& witness) {
+            const std::string& source) {
   set_phases(table, ticks);
   leave_out(table, out_of_lock);
   const auto slips = static_cast<std::size_t>(std::count_if(
@@ -41,12 +41,12 @@ void accept(PhaseTable& table, std::span<const std::int64_t> ticks, std::span<co
   if (static_cast<double>(slips) > kMaxSlips * static_cast<double>(ticks.size()))
     refuse(table, fmt::format("by {} {} of {} frames do not follow the frame before them, the first at frame "
                               "{}",
-                              witness, slips, ticks.size(), first));
+                              source, slips, ticks.size(), first));
   if (slips == 0) return;
   table.warning = fmt::format(
       "by {}, not every frame follows the frame before it: {}; the phases of all later "
       "frames are corrected (--trust-stated-drive keeps the stated lock)",
-      witness, slips_in_words(table.frames));
+      source, slips_in_words(table.frames));
 }
 
 /// \returns whether the plate could tell; `why_not` if it could not

@@ -2,9 +2,9 @@
 /// \file
 /// Check of a stated phase lock ("N frames per cycle, none missing") against what the stack shows.
 ///
-/// Three witnesses, in this order: the plate in the frames (plate_phases.hpp), the time stamps of the camera,
-/// and the motion of the bed (phase_estimation.hpp). The first that can tell decides. Missing and doubled
-/// frames are corrected in the phases and reported; a lock that does not fit at all is refused.
+/// There are three sources, in this order: the plate in the frames (plate_phases.hpp), the time stamps of the
+/// camera, and the motion of the bed (phase_estimation.hpp). The first that gives an answer decides. Missing
+/// and doubled frames are corrected in the phases and reported; a lock that does not fit at all is refused.
 
 #include <cstdint>
 #include <span>
@@ -26,13 +26,15 @@ struct LockEvidence {
   std::string copied;  ///< as RepeatedFrames::copied
 };
 
-/// The phases of a lock, checked against plate and time stamps. PhaseTable::checked_by states the witness; if
-/// it is empty, neither could tell, and PhaseTable::not_checked states why. If frames are missing or doubled,
-/// PhaseTable::frames holds the corrected phases and PhaseTable::warning names the frames. The plate can tell
-/// as in read_plate. Time stamps can tell if the intervals are whole multiples of their median to a quarter.
+/// The phases of a lock, checked against plate and time stamps. PhaseTable::checked_by states the source; if
+/// it is empty, neither gave an answer, and PhaseTable::not_checked states why. If frames are missing or
+/// doubled, PhaseTable::frames holds the corrected phases and PhaseTable::warning names the frames. The plate
+/// gives an answer as in read_plate, time stamps if the intervals are whole multiples of their median to a
+/// quarter.
+///
 /// \pre lock.locked()
-/// \throws ConfigError naming the frame and the cure if the plate moves with another period, or if more than
-///     one frame in ten would be missing or doubled
+/// \throws ConfigError naming the frame and the remedy if the plate moves with another period, or if more
+/// than one frame in ten would be missing or doubled
 PhaseTable check_lock(const PhaseLock& lock, const LockEvidence& evidence);
 
 /// The same by the motion of the bed, for a table that is not checked yet. The bed can tell if it moves,

@@ -321,7 +321,7 @@ class ProfileFit {
 
   /// From the centres of the discs to the middle of their rims. If a highlight attracted the centres, f is
   /// that of a smeared rim, which the residuals at the rims show: they are least where the rims are
-  /// concentric. A compass search, for a smeared rim has no gradient to the middle.
+  /// concentric. A compass search, because a smeared rim has no gradient towards the centre.
   /// \returns nothing if no highlight attracted the centres
   std::optional<cv::Point2d> shift_to_rims() {
     constexpr double kFirstStep = 0.125;                 // R

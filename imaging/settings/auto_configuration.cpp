@@ -330,7 +330,7 @@ class SettingsSearch {
 
   /// The choice of plain discs that explain nearly all of the picture, so that the other models, which take
   /// most of the time, cannot explain clearly more. Of each polarity, the size with the sharpest votes is
-  /// tried: first on a part of the picture, for most pictures show there that it does not suffice.
+  /// tried: first on a part of the picture, because in most pictures a part shows that it does not suffice.
   std::optional<SettingsChoice> plain_discs_that_suffice() {
     constexpr double kDiscsAcross = 14;
     constexpr int kMinPart = 160;
@@ -345,7 +345,7 @@ class SettingsSearch {
       if (sharpest != hypotheses_.end()) try_all({sharpest, sharpest + 1});
     }
     if (!best_ || best_->explained <= 0) return std::nullopt;
-    // The gaps of a crystal and the middles of its beads are as alike as the beads: see judge().
+    // The gaps of a crystal, and the middles of its beads, resemble each other as the beads do: see judge().
     if (best_->diameter_px < kOfLattice * lattice_) return std::nullopt;
     const int side = std::max(kMinPart, static_cast<int>(kDiscsAcross * best_->diameter_px));
     const cv::Mat part = busiest(grey_, side);
@@ -396,7 +396,7 @@ class SettingsSearch {
   SettingsChoice judge() {
     region_ = {grey_, candidates_.empty() ? 0 : 0.5 * candidates_.front().diameter_px};
     // In a crystal that fills the frame the gaps are as similar as the discs, and described as well.
-    if (lattice_ > 0) region_.clearly = kClearlyInCrystal;
+    if (lattice_ > 0) region_.min_advantage = kMinAdvantageInCrystal;
     if (patterned_) region_.picture = region_for_large(frame_, patterned_->diameter_px);
     return confirmed(region_, given_, try_settings(region_, given_, candidates_, threads_));
   }

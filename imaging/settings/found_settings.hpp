@@ -24,12 +24,12 @@ struct TriedSettings {
   FoundSettings settings;
   double evidence = 0;    ///< of the picture for the discs located with them, nats (picture_evidence.hpp)
   std::size_t beads = 0;  ///< discs located with them
-  double rim_px = 0;  ///< diameter of the rims of these discs; that of a profile may be another than searched
+  double rim_px = 0;      ///< diameter of the rims of these discs; a profile may differ from the searched one
   /// Variation of the rims of these discs (rim_variation.hpp); they are not round above kMaxRimVariation.
   double rim_variation = 0;
   double rim_shift = 0;    ///< of these discs (rim_shift.hpp), in radii; not round above kMaxRimShift
-  std::string not_chosen;  ///< why others with less evidence were chosen, in words; empty: they were not
-  bool preferred = false;  ///< the chosen ones needed clearly more evidence than these, and had it
+  std::string not_chosen;  ///< why these were not chosen, in words; empty: they have less evidence
+  bool preferred = false;  ///< the first candidates, but the chosen ones have enough evidence to replace them
 };
 
 /// What discs have in common if they come in pairs.
@@ -51,8 +51,8 @@ struct LargerDisc {
 
 /// All settings that were tried, and the best of them.
 struct SettingsChoice {
-  std::vector<TriedSettings> tried;  ///< the chosen ones first, the others by evidence; empty: none explains
-                                     ///< anything
+  std::vector<TriedSettings> tried;    ///< the chosen ones first, the others by evidence; empty: no settings
+                                       ///< explain the picture
   std::vector<TriedSettings> refused;  ///< if empty: what was tried, with the reasons; those that explain
                                        ///< something but are not round first, each by evidence
   /// The chosen ones explain so much of the picture that other sizes and models were not tried.
@@ -60,18 +60,18 @@ struct SettingsChoice {
   /// The lattice constant of a crystal that fills the picture, px, if the chosen discs cover little of it:
   /// the beads of the crystal are not among them. 0: none.
   double uncovered_lattice_px = 0;
-  /// The smallest distance of two of the chosen discs, px, if it is that of larger beads that touch, of which
-  /// the discs may be the highlights. 0: it is not.
+  /// The smallest distance of two of the chosen discs, px, if the discs may be the highlights of larger beads
+  /// that touch at this distance. 0: they may not.
   double apart_px = 0;
   /// The two highlights of each bead, if the discs with most evidence come in pairs (paired_spots.hpp).
   std::optional<SpotPairs> pairs;
-  /// The chosen ones are the beads of the pairs, and the second ones their highlights; otherwise the chosen
-  /// ones are the highlights, for no discs were found that have one pair each.
+  /// The chosen ones are the beads of the pairs, and the second ones their highlights. Otherwise the chosen
+  /// ones are the highlights, because no discs with one pair each were found.
   bool beads_of_pairs = false;
   /// Width of the chosen discs, px, if it is that of the highlights of larger beads or of gaps. 0: it is not.
   double spots_px = 0;
-  /// The distance of neighbours, px, if it is the width of shaded beads that touch, of which the chosen discs
-  /// are the bright middle. 0: it is not, or another note says so.
+  /// The distance of neighbours, px, if it is the width of shaded beads that touch and the chosen discs are
+  /// their bright centres. 0: it is not, or another note says so.
   double touching_px = 0;
   /// Round regions that are larger than the beads and that no bead explains (larger_discs.hpp).
   std::vector<LargerDisc> larger;

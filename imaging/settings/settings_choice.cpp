@@ -203,7 +203,7 @@ TriedSettings tried_in_full(const ExaminedRegion& region, const LocatorOptions& 
   return try_one(region, given, settings, given.refine.sweeps);
 }
 
-SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
+SettingsChoice choose(std::vector<TriedSettings> tried, double min_advantage) {
   constexpr double kDiscs = 3, kTimesArea = 2, kMore = 1.05;
   // Discs that may overlap can explain more, like discs of further sizes.
   const auto sizes = [](const TriedSettings& t) {
@@ -230,13 +230,14 @@ SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
                                        : "a further size gains less than three discs";
     } else if ((shows_more_of(*first, *best) ? kMore
                 : are_parts(*first, *best)   ? kMinAdvantage
-                                             : clearly) *
+                                             : min_advantage) *
                        first->evidence >
                    best->evidence &&
                !finds_more_of_the_same(*best, *first)) {
-      reason =
-          fmt::format("less than {:g} times the evidence of the preferred ones{}", clearly,
-                      clearly > kMinAdvantage ? ", for the gaps of a crystal are as alike as its discs" : "");
+      reason = fmt::format("less than {:g} times the evidence of the preferred ones{}", min_advantage,
+                           min_advantage > kMinAdvantage
+                               ? ", because the gaps of a crystal resemble each other as its discs do"
+                               : "");
     } else if (area_of(*first) > kTimesArea * area_of(*best)) {
       reason = "less than half of the area of the preferred ones";
     }
@@ -255,7 +256,7 @@ SettingsChoice choose(std::vector<TriedSettings> tried, double clearly) {
 
 SettingsChoice confirmed(const ExaminedRegion& region, const LocatorOptions& given,
                          std::vector<TriedSettings> tried) {
-  SettingsChoice choice = choose(std::move(tried), region.clearly);
+  SettingsChoice choice = choose(std::move(tried), region.min_advantage);
   // Each failure lowers the evidence of one of the settings to that of its full fit.
   for (std::size_t left = choice.tried.size(); left > 0; --left) {
     TriedSettings& first = choice.tried.front();
@@ -263,7 +264,7 @@ SettingsChoice confirmed(const ExaminedRegion& region, const LocatorOptions& giv
     first = tried_in_full(region, given, first.settings);
     constexpr double kKept = 0.9;
     if (first.evidence >= kKept * before && is_round(first)) break;
-    choice = choose(std::move(choice.tried), region.clearly);
+    choice = choose(std::move(choice.tried), region.min_advantage);
     if (choice.tried.empty()) break;
   }
   return choice;

@@ -48,8 +48,8 @@ class Columns {
     if (const auto* found = find(quantity)) return *found;
     throw ConfigError(
         {.file = table_.file, .key = quantity},
-        fmt::format("this column is missing; --columns {}=NAME states another name. There are: {}.", quantity,
-                    fmt::join(table_.names, ", ")));
+        fmt::format("this column is missing; --columns {}=NAME states another name. The columns are: {}.",
+                    quantity, fmt::join(table_.names, ", ")));
   }
   [[noreturn]] void refuse(std::size_t row, const std::string& quantity, const std::string& complaint) const {
     throw InputError({.file = table_.file, .key = name_of(quantity)},

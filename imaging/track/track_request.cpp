@@ -6,8 +6,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "core/assignments.hpp"
 #include "core/error.hpp"
+#include "core/key_assignments.hpp"
 
 namespace twincell::imaging {
 

@@ -196,7 +196,7 @@ ImpactErrors impact_errors(const std::vector<Impact>& impacts, const std::vector
     const double before = impact.rim / (impact.wall ? 1 : 2);
     change += std::pow((scene.radius * exact[k].spin - before) / impact.speed(), 2);
   }
-  return {PhaseSpread::of(e, 0), PhaseSpread::of(v_t, 0), PhaseSpread::of(spin, 0),
+  return {EntryPhaseSpread::of(e, 0), EntryPhaseSpread::of(v_t, 0), EntryPhaseSpread::of(spin, 0),
           std::sqrt(change / static_cast<double>(impacts.size()))};
 }
 ImpactErrors impact_errors(const std::vector<Impact>& impacts, const Scene& scene, const StepSetting& setting,

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/accuracy/phase_spread.hpp"
+#include "sim/accuracy/entry_phase_spread.hpp"
 #include "sim/accuracy/step_setting.hpp"
 #include "sim/event_driven/collision_with_memory.hpp"
 #include "sim/scene/scene.hpp"
@@ -59,7 +59,7 @@ std::vector<std::vector<Outcome>> outcomes_by_steps(const std::vector<Impact>& i
 /// Errors over impacts and phases, of e = v_n'/v_n, of v_t' and of R w', the last two relative to the speed
 /// of the surfaces at first touch.
 struct ImpactErrors {
-  PhaseSpread restitution, tangential, spin;
+  EntryPhaseSpread restitution, tangential, spin;
   double spin_change = 0;  ///< rms of R (w' - w) over the same speed: the scale of the spin error
 };
 /// Errors of the impacts with the integrator and n of `setting`, at `phases` entry phases.

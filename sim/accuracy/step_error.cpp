@@ -126,7 +126,7 @@ std::optional<StepError> step_error(const Scene& scene, const Plan& plan, int ph
       restitutions(fine, plan.dt / std::max(kFiner, std::ceil(kFine / scene.steps_per_contact)), v, 1);
   const auto measured = restitutions(space, plan.dt, v, phases);
   if (exact.empty() || measured.empty()) return std::nullopt;
-  return StepError{v, exact.front(), PhaseSpread::of(measured, exact.front()),
+  return StepError{v, exact.front(), EntryPhaseSpread::of(measured, exact.front()),
                    friction_error(space, plan, v)};
 }
 

@@ -16,7 +16,7 @@ namespace twincell::sim {
 struct StepError {
   double speed = 0;        ///< of approach, sqrt(g sigma)
   double restitution = 0;  ///< e of the same law, with steps so short that their error is negligible
-  PhaseSpread error;       ///< of e, over the entry phases
+  EntryPhaseSpread error;  ///< of e, over the entry phases
   /// Errors of oblique impacts at the same speed, sliding and sticking: 15, 30, 45, 60 and 75 degrees from
   /// the normal. Absent without friction, or if their exact outcome is not available (rolling resistance,
   /// laws whose normal force has history), or if the beads do not part.

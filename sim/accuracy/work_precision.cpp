@@ -71,16 +71,16 @@ struct Run {
 };
 
 struct ImpactSpread {
-  PhaseSpread restitution, sticking;
+  EntryPhaseSpread restitution, sticking;
 };
 ImpactSpread compare(const std::vector<double>& e, const std::vector<double>& sticking,
                      const ContactLaws& laws, double m_eff, double inv_m_t) {
   const LinearCollision exact =
       std::get<LinearSpringDashpot>(laws.normal).oscillator({.m_eff = m_eff, .r_eff = 0, .inv_m_t = inv_m_t});
   const auto& friction = std::get<SpringSlider>(laws.tangential);
-  return {PhaseSpread::of(e, exact.restitution()),
-          PhaseSpread::of(sticking, sticking_ratio(friction.k_t, friction.damping.eta(m_eff), inv_m_t,
-                                                   exact.contact_time()))};
+  return {EntryPhaseSpread::of(e, exact.restitution()),
+          EntryPhaseSpread::of(sticking, sticking_ratio(friction.k_t, friction.damping.eta(m_eff), inv_m_t,
+                                                        exact.contact_time()))};
 }
 
 constexpr double kImpactSpeed = 1e-3;
@@ -443,7 +443,7 @@ std::optional<WorkPrecision> cheapest(const std::vector<WorkPrecision>& all, dou
 
 WorkPrecision equal_accuracy(const std::vector<WorkPrecision>& all, const WorkPrecision& reference,
                              bool mean) {
-  const auto as_good = [&](const PhaseSpread& a, const PhaseSpread& b) {
+  const auto as_good = [&](const EntryPhaseSpread& a, const EntryPhaseSpread& b) {
     return a.rms <= b.rms && a.largest <= b.largest && (!mean || std::abs(a.mean) <= std::abs(b.mean));
   };
   const CollisionErrors& own = reference.collision;

@@ -16,8 +16,8 @@ namespace twincell::sim {
 
 /// Errors of one collision: of e (Fortini & Huang 2015, eq. A5), and of v_t'/v_t without slip.
 struct CollisionErrors {
-  PhaseSpread restitution_pair, restitution_wall;
-  PhaseSpread sticking_pair, sticking_wall;  ///< two beads; a bead and the plate
+  EntryPhaseSpread restitution_pair, restitution_wall;
+  EntryPhaseSpread sticking_pair, sticking_wall;  ///< two beads; a bead and the plate
 
   /// Largest error of e: the larger of restitution_pair.largest and restitution_wall.largest.
   [[nodiscard]] double restitution() const;

@@ -10,8 +10,8 @@
 
 namespace twincell::sim {
 
-/// The values at all eight stages, in as many SIMD vectors as they need; a number type of
-/// laws/scalar_arithmetic.hpp.
+/// The values at all eight stages, in as many SIMD vectors as they need. It has the operations of
+/// laws/scalar_arithmetic.hpp, so the laws take it as a number type.
 template <class Lanes>
 struct Octet {
   using Part = typename Lanes::V;
@@ -128,7 +128,7 @@ struct CollocationOf {
     return sum + rest;
   }
 
-  /// Initial guess: along n_0 the motion of an oscillator, across it exponential relaxation.
+  /// Initial guess: motion of an oscillator along n_0, exponential relaxation across it.
   [[gnu::always_inline]] static void guess(const CollocationStart& a, V time, const V* r0, const V* u0,
                                            const V* n0, V* r, V* u) {
     V a0[kSlopes];
@@ -149,6 +149,7 @@ struct CollocationOf {
     for (int k = 0; k < kSlopes; ++k) u[k] = fma(relaxed_time, a0[k], u0[k]);
     for (int k = 0; k < D; ++k) u[k] = fma(more_u, n0[k], u[k]);
   }
+  /// Performs the step.
   static void step(const CollocationStart& a, CollocationMotion& m) {
     // Setup: constants as SIMD vectors, free motion r0, u0 at all stages, initial guess.
     const Collocation& numbers = *a.method;
@@ -227,8 +228,8 @@ struct CollocationOf {
   }
 };
 
-/// Table of the steps by laws (their indices in the lists of laws/axes.hpp) and dimension; null for laws
-/// whose collisions are not smooth.
+/// Table of the step functions by laws (their indices in the lists of laws/axes.hpp) and dimension; null for
+/// laws whose collisions are not smooth.
 template <class Lanes>
 struct CollocationTable {
   static constexpr std::size_t kTangentials = std::variant_size_v<TangentialAxis>;

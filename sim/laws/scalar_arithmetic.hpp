@@ -58,15 +58,16 @@ R each(bool where, R x, R y, F f) {
   return where ? R(f(x)) : y;
 }
 
-/// 1/sqrt(x), to full precision for x in 0.8 .. 1.1 and finite for every x >= 0. The square root and the
+/// 1/sqrt(x), to full precision for x in 0.8 .. 1.1, and finite for x in 0 .. 1e14. The square root and the
 /// division are the slowest instructions of a contact, and the fast estimates of different vector units
 /// differ. A polynomial and one third-order step are fast and give the same bits everywhere. Callers scale x
-/// so that touching beads have x <= 1; the overlaps of a healthy run give x above 0.8.
+/// so that touching beads have x <= 1; overlaps below a tenth of R_i + R_j give x above 0.8.
 template <class V>
 inline V inverse_sqrt_near_one(V x) {
   const V e = V(1.0) - x, e2 = e * e;
   // Minimax polynomial of degree 4 for (1 - e)^(-1/2), relative error 1.6e-6 (Remez). Halley's step reduces
-  // the error to 1e-17. Terms are evaluated in pairs, because the rest of the contact waits for the result.
+  // the error to 1e-17, below the rounding. Terms are evaluated in pairs, because the rest of the contact
+  // waits for the result.
   V y = fma(V(0.50001110355131846), e, V(1.0000015335600868));
   y = fma(fma(V(0.35516373634072791), e2, fma(V(0.3123060746874187), e, V(0.37404445348065794))), e2, y);
   const V h = nfma(x * y, y, V(1.0));

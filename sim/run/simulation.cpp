@@ -89,8 +89,8 @@ std::optional<double> steps_per_cycle_of_file(const Scene& scene) {
 }
 
 /// Largest speed at which the start of the drive makes a moving wall meet a bead that touches it.
-/// \param before the same beads above walls at rest; their own motion, as that of a bed that still falls, is
-///     no blow of the drive
+/// \param before the same beads above walls at rest; their own motion, as in a bed that still falls, does not
+///     count
 double largest_kick(const System& s, const std::vector<Bead>& before) {
   const Vec3 plate = s.plate_velocity_in_space();
   double kick = 0;
@@ -285,8 +285,8 @@ std::vector<std::string> Simulation::warnings() const {
       const auto now = static_cast<double>(plan_.steps_per_period);
       if (std::abs(*before / now - 1) > kRounding)
         all.push_back(fmt::format(
-            "the run that wrote {} took {:.0f} steps per cycle, this one takes {:.0f}: it goes on "
-            "with another error of the step, not bit for bit (time.steps_per_contact).",
+            "the run that wrote {} took {:.0f} steps per cycle, this one takes {:.0f}: it continues "
+            "with a different error of the step, not bit for bit (time.steps_per_contact).",
             scene_.from.string(), *before, now));
     }
   if (driven_) return all;
@@ -295,7 +295,7 @@ std::vector<std::string> Simulation::warnings() const {
   constexpr double kGentle = 0.01;
   if (const double kick = largest_kick(at_start, system_.beads); kick > kGentle)
     all.push_back(
-        fmt::format("the drive starts with a blow: a bead at rest on a wall meets it at {:.3g} sigma/t0; "
+        fmt::format("the drive starts abruptly: a bead at rest on a wall meets it at {:.3g} sigma/t0; "
                     "drive.start = \"comoving\" or \"ramp\" avoids it.",
                     kick));
   return all;

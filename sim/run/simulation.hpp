@@ -34,15 +34,16 @@ struct TemperatureSums {
   Vec3 all = Vec3::Zero(), coarse = Vec3::Zero();
   std::int64_t steps = 0;  ///< total weight
 };
-/// Weighted sum of the forces over samples at a random step in every pair of intervals between those of the
-/// temperature (Frame::force_mean); unknown in a run that stores no contacts, and before the first sample.
+/// Weighted sum of the forces over the samples since the last frame (Frame::force_mean). There is one sample
+/// of the forces for two of the temperature, at a random step between them. Unknown in a run that stores no
+/// contacts, and before the first sample.
 using ForceSums = BedForces;
 
-/// Everything that the rest of a run depends on, apart from its scene. A run resumed from it continues bit
-/// for bit.
+/// Complete state of a run: together with the scene, it determines the rest of the run. A run resumed from it
+/// continues bit for bit.
 struct RunState {
   bool driven = false;    ///< false: still settling on the plate at rest
-  std::int64_t step = 0;  ///< since the start of settling, or since phase 0 of the drive
+  std::int64_t step = 0;  ///< number of steps since the start of settling, or since phase 0 of the drive
   int quiet = 0;          ///< number of consecutive checks that found the settling bed at rest
   RelaxationResult settled;
   double height = 0;  ///< height of the box of the trajectory, sigma
@@ -61,8 +62,8 @@ struct RunState {
 /// \throws ConfigError, InputError if the start is impossible
 RunState placed(const Scene& scene, Progress& progress = Progress::none());
 
-/// Largest number of steps of a run between two updates of its Progress: about 0.1 s of work, and at least 64
-/// steps.
+/// Largest number of steps of a run between two updates of its Progress: 2 million particle-steps, but at
+/// least 64 steps.
 std::int64_t steps_per_call(std::size_t beads);
 
 /// Mean of m v^2/2 + I omega^2/2 over the beads, m g sigma; 0 without beads.
@@ -89,8 +90,8 @@ class Simulation {
   [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] const RelaxationResult& settled() const { return settled_; }
   [[nodiscard]] const System& system() const { return system_; }
-  /// Warnings for the user: those of the plan, a bed that did not come to rest and, before the drive, an
-  /// abrupt start.
+  /// Warnings for the user: those of the plan, a bed that did not come to rest, a start in motion that does
+  /// not continue bit for bit and, before the drive, an abrupt start.
   [[nodiscard]] std::vector<std::string> warnings() const;
   /// Metadata of the trajectory; of its provenance only `config`, the scene. Tracers are chosen when the bed
   /// has settled.

@@ -353,22 +353,25 @@ void add_start_and_time(Rows& rows) {
        "1",
        "0.4 (3D: 0.25)",
        "0.1",
-       "share of the column's area (3D: volume) that the beads of a random start take before they fall: the "
-       "smaller, the taller the column and the later the last beads land. At most 0.5 (3D: 0.35)",
+       "share of the column's area (3D: volume) that the beads of a random start cover before they fall. "
+       "With a "
+       "smaller share the column is taller and the last beads land later. At most 0.5 (3D: 0.35)",
        {"start.kind=random"}},
       {"start.height",
        "σ",
        "that of start.fraction",
        "60.0",
-       "height of the column of a random start, instead of start.fraction: tall columns rain, low ones fall "
-       "as a block",
+       "height of the column of a random start, instead of start.fraction: the beads of a tall column land "
+       "one "
+       "after another, those of a low one together",
        {"start.kind=random"}},
       {"start.fall_speed",
        "v0",
        "0",
        "2.0",
-       "downward speed of every bead of a random start, next to its own of start.velocity_scale: from the "
-       "height h above the bed it lands with the speed √(v² + 2gh)",
+       "downward speed v of every bead of a random start, added to its random velocity "
+       "(start.velocity_scale). "
+       "A bead lands from the height h with the speed √(v² + 2gh)",
        {"start.kind=random"}},
       {"start.rest_energy", "m g σ", "1e-12", "1e-10",
        "kinetic energy per bead below which a bed counts as at rest"},

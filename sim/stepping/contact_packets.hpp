@@ -11,24 +11,24 @@
 
 namespace twincell::sim {
 
-/// Bytes that vectors have allocated.
+/// Bytes that the vectors have allocated.
 template <class... T>
 std::size_t bytes_of(const std::vector<T>&... vectors) {
   return ((vectors.capacity() * sizeof(T)) + ... + 0);
 }
 
-/// Resizes a vector that is filled anew again and again. Its spare room is at most a sixteenth of its size;
-/// a vector that grows by itself may take twice what it holds.
+/// Resizes a vector that is refilled many times. Its spare capacity is at most a sixteenth of its size; a
+/// vector that grows by itself may allocate twice its size.
 template <class T>
 void resize_closely(std::vector<T>& v, std::size_t n) {
   if (n > v.capacity()) {
-    v = {};  // the old memory is free before the new is taken
+    v = {};  // frees the old memory before the new is allocated
     v.reserve(n + n / 16);
   }
   v.resize(n);
 }
 
-/// The same, with n times `value`.
+/// Resizes a vector as resize_closely() does and sets all n elements to `value`.
 template <class T>
 void assign_closely(std::vector<T>& v, std::size_t n, T value) {
   v.clear();

@@ -78,7 +78,7 @@ TEST_F(Sweeps, ASweepEndsInItsPictureAndPlotDrawsOtherResults) {
   const Ran ran = run_program({"sweep", "run", grid_, "--folder", at("one")});
   ASSERT_EQ(ran.code, kDone) << ran.err;
   EXPECT_NE(ran.out.find("picture: " + at("one/figures/sweep.svg")), std::string::npos) << ran.out;
-  // The table of the grid: the crystal has one run, for another seed does not change it.
+  // The table of the grid: the crystal has one run, because the seed does not change it.
   EXPECT_NE(ran.out.find("drive.gamma  start.kind  runs  phase"), std::string::npos) << ran.out;
   EXPECT_TRUE(std::regex_search(ran.out, std::regex(R"(\n1\.6 +random +2 +bouncing +\d\S* \.\.\. \d)")))
       << ran.out;
@@ -469,9 +469,9 @@ contact.mu = [0.0, 0.3]
     EXPECT_GE(document["warnings"].size(), 2U) << document;
   }
   // What only the run can tell is in its result: the abrupt start of the drive.
-  const std::string blow = "the drive starts with a blow";
+  const std::string abrupt = "the drive starts abruptly";
   const Ran again = run_program({"sweep", "run", plan, "--folder", at("doubtful")});
-  EXPECT_EQ(count(again.err, blow), 1U) << again.err;
+  EXPECT_EQ(count(again.err, abrupt), 1U) << again.err;
   EXPECT_NE(again.err.find("and, with other numbers, 2 other points"), std::string::npos) << again.err;
 }
 

@@ -127,13 +127,14 @@ class TableReader final : public PictureBeadsReader {
     }
     for (const char* needed : {"frame", "particle", "x", "y"})
       if (!column(needed))
-        fail_at(1, fmt::format("there is no column '{}'; --columns {}=NAME states another name. There are: "
-                               "{}.{}",
-                               needed, needed, fmt::join(names, ", "),
-                               std::string_view(needed) == "particle"
-                                   ? " Beads that are not linked, such as those of locate, have no particle; "
-                                     "track links them."
-                                   : ""));
+        fail_at(
+            1, fmt::format("there is no column '{}'; --columns {}=NAME states another name. The columns are: "
+                           "{}.{}",
+                           needed, needed, fmt::join(names, ", "),
+                           std::string_view(needed) == "particle"
+                               ? " Beads that are not linked, such as those of locate, have no particle; "
+                                 "track links them."
+                               : ""));
     if (options_.dimension == 3 && !column("z")) fail_at(1, "there is no column 'z' (--dimension 3).");
     note_ignored(names);
     has_.radius = column("radius") || column("diameter");

@@ -26,7 +26,7 @@ struct ForeignOptions {
   std::optional<double> timestep;  ///< length of a step; required unless the file has times
   double sigma = 1;                ///< bead diameter, the trajectory's unit of length
   double gravity = 1;              ///< g; t0 = sqrt(sigma/g) is the trajectory's unit of time
-  /// Lower left inside corner of the cell, plate at its mean height; absent: 0, along a period its beginning
+  /// Lower left inside corner of the cell, plate at its mean height; absent: 0, or the lower end of a period
   std::optional<Vec3> origin;
   std::optional<double> width;  ///< between the side walls; absent: up to the end of the file's box
   DriveSpec drive;              ///< drive of the plate; empty: unknown

@@ -115,7 +115,7 @@ def test_wrong_options_have_the_sentence_of_the_program(tmp_path):
 
 
 @pytest.mark.parametrize("stack, sentence", [
-    (np.zeros((60, 80, 3), np.uint8), r"stack: has the shape \(60, 80, 3\), as a picture in colours"),
+    (np.zeros((60, 80, 3), np.uint8), r"stack: has the shape \(60, 80, 3\), which is that of a colour picture"),
     ([], "pictures: holds no frame"),
     (np.zeros((0, 0), np.uint8), r"picture: has the shape \(0, 0\)"),
     ([np.zeros((20, 20), np.uint8), np.zeros((21, 20), np.uint8)], "picture 1: is 20 x 21 px, but the first"),

@@ -570,7 +570,7 @@ def test_docstrings_name_the_parameters_of_python():
 
 def test_docstrings_are_those_of_the_headers():
     from conftest import ROOT
-    header = (ROOT / "analysis/neighbours/bond_orientation.hpp").read_text()
+    header = (ROOT / "analysis/neighbours/bond_orientational_order.hpp").read_text()
     assert "Steinhardt's q_6 with the plane's normal" in header
     assert "Steinhardt's q_6 with the plane's normal" in twincell.bond_order.__doc__
     for name in twincell.__all__:

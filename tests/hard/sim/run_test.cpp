@@ -168,7 +168,7 @@ TEST(Run, CoMovingCrystalHasZeroSlip) {  // region A1 of the first paper, below 
 TEST(Run, AbruptStartGivesAWarningAndBreaksTheCrystal) {
   const auto warned = [](const Simulation& run) {
     for (const std::string& w : run.warnings())
-      if (w.find("the drive starts with a blow: ") != std::string::npos) return true;
+      if (w.find("the drive starts abruptly: ") != std::string::npos) return true;
     return false;
   };
   const auto made = [](const std::vector<std::string>& set) {
@@ -179,7 +179,7 @@ TEST(Run, AbruptStartGivesAWarningAndBreaksTheCrystal) {
   EXPECT_FALSE(warned(made({})));
   EXPECT_FALSE(warned(made({"drive.start=ramp"})));
   EXPECT_FALSE(warned(made({"drive.start=abrupt", "drive.gamma=0.009"})));  // A omega < 0.01
-  // A bed that still falls meets the floor at its own speed, which is no blow of the drive.
+  // A bed that still falls meets the floor at its own speed, which the start of the drive does not cause.
   int blows = 0;
   for (const char* limit : {"3", "4", "5", "6"}) {
     const auto with = [&](const char* gamma) {

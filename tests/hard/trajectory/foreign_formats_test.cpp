@@ -354,10 +354,10 @@ TEST_F(ForeignFormats, ATableMarksItsTracers) {
 
 TEST_F(ForeignFormats, DamagedTables) {
   const std::string head = "frame,particle,x,y\n";
-  EXPECT_EQ(
-      refusal("csv", "frame,x,y\n0,1,2\n"),
-      "f:1: there is no column 'particle'; --columns particle=NAME states another name. There are: "
-      "frame, x, y. Beads that are not linked, such as those of locate, have no particle; track links them.");
+  EXPECT_EQ(refusal("csv", "frame,x,y\n0,1,2\n"),
+            "f:1: there is no column 'particle'; --columns particle=NAME states another name. The columns "
+            "are: frame, x, y. Beads that are not linked, such as those of locate, have no particle; track "
+            "links them.");
   EXPECT_EQ(refusal("csv", head), "f: the table has no row.");
   EXPECT_EQ(refusal("csv", head + "0,1,2\n"), "f:2: 4 fields are needed, 3 were found.");
   EXPECT_EQ(refusal("csv", head + "0,1,2,\n"), "f:2: y: '' is not a finite number.");

@@ -160,8 +160,9 @@ TEST(Config, KeysAreGivenOnceAndByTheirOwnName) {
   EXPECT_NE(refusal("[a]\nb = 1\n[a]\nc = 2\n").find("f.toml:3"), std::string::npos);
   const Config quoted = Config::from_text("\"a.b\" = 1\n", "f.toml");
   static_cast<void>(quoted.root().section("a").number("b"));
-  expect_refusal<ConfigError>([&] { quoted.refuse_unknown_keys(); },
-                              "f.toml:1:9: a.b: is a name in quotes, in which a point separates nothing");
+  expect_refusal<ConfigError>(
+      [&] { quoted.refuse_unknown_keys(); },
+      "f.toml:1:9: a.b: is a name in quotes, in which a point does not separate table and key");
 }
 
 }  // namespace

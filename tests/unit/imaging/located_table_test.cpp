@@ -109,12 +109,11 @@ TEST(LocatedTable, WhatIsNoTableOfBeadsIsNamed) {
   };
   const std::vector<std::string> names = {"frame", "x", "y"};
   EXPECT_EQ(said(table_of(names, {{0}, {1}, {1}})), "");
-  EXPECT_NE(
-      said(table_of({"frame", "X", "y"}, {{0}, {1}, {1}}))
-          .find(
-              "beads.csv: x: this column is missing; --columns x=NAME states another name. There are: frame, "
-              "X, y."),
-      std::string::npos);
+  EXPECT_NE(said(table_of({"frame", "X", "y"}, {{0}, {1}, {1}}))
+                .find("beads.csv: x: this column is missing; --columns x=NAME states another name. The "
+                      "columns are: frame, "
+                      "X, y."),
+            std::string::npos);
   for (const double frame : {-1.0, 0.5, std::nan("")})
     EXPECT_NE(said(table_of(names, {{0, frame}, {1, 2}, {1, 2}})).find("frame: row 2: "), std::string::npos)
         << frame;

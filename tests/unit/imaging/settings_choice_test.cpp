@@ -106,11 +106,12 @@ TEST(SettingsChoice, MoreEvidenceIsExplained) {
   const auto reason = [](const SettingsChoice& choice) { return choice.tried.at(1).not_chosen; };
   EXPECT_EQ(reason(choose({tried(10, 1000, 10), tried(20, 1240, 5)})),
             "less than 1.25 times the evidence of the preferred ones");
-  EXPECT_EQ(
-      reason(choose({tried(10, 1000, 100), tried(20, 1500, 50)}, kClearlyInCrystal)),
-      "less than 1.6 times the evidence of the preferred ones, for the gaps of a crystal are as alike as its "
-      "discs");
-  EXPECT_EQ(choose({tried(10, 1000, 100), tried(20, 1700, 50)}, kClearlyInCrystal).tried[0].evidence, 1700);
+  EXPECT_EQ(reason(choose({tried(10, 1000, 100), tried(20, 1500, 50)}, kMinAdvantageInCrystal)),
+            "less than 1.6 times the evidence of the preferred ones, because the gaps of a crystal resemble "
+            "each other "
+            "as its discs do");
+  EXPECT_EQ(choose({tried(10, 1000, 100), tried(20, 1700, 50)}, kMinAdvantageInCrystal).tried[0].evidence,
+            1700);
   EXPECT_EQ(reason(choose({tried(40, 1000, 100), tried(10, 9000, 300)})),
             "less than half of the area of the preferred ones");
   EXPECT_EQ(reason(choose({tried(10, 10000, 100), tried(10, 10290, 105, {14})})),

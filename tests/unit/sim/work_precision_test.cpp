@@ -35,7 +35,7 @@ TEST(CollisionErrors, VerletErrorsAgreeWithAnIndependentProgram) {
   for (const Row& row :
        {Row{10.37, 9.8e-3, 2.2e-2}, Row{20.37, 4.6e-3, 9.2e-3}, Row{50.37, 1.8e-3, 3.2e-3},
         Row{100.37, 9.2e-4, 1.5e-3}, Row{200.37, 4.6e-4, 7.3e-4}, Row{400.37, 2.3e-4, 3.6e-4}}) {
-    const PhaseSpread e = collision_errors({.n = row.n}).restitution_pair;
+    const EntryPhaseSpread e = collision_errors({.n = row.n}).restitution_pair;
     std::printf("verlet, n = %g: rms error of e %.2e (%.1e), largest %.2e (%.1e)\n", row.n, e.rms, row.rms,
                 e.largest, row.largest);
     EXPECT_NEAR(e.rms, row.rms, 0.05 * row.rms);

@@ -85,7 +85,7 @@ TEST(TrajectoryDoubts, BeadsThatExchangeTheirPlaces) {
   }
   const std::string said = doubts(shuffled);
   EXPECT_NE(said.find("between the frames of the steps 24 and 25, 50 beads take the places of others: the "
-                      "numbers of the beads are those of a row"),
+                      "numbers count the rows of a frame"),
             std::string::npos)
       << said;
   EXPECT_EQ(said.find("velocities say"), std::string::npos) << said;

@@ -233,7 +233,7 @@ TEST(Sliding, SplitIsOfSecondOrder) {
                            kPhases);
     };
     const ImpactErrors coarse = errors(kCoarse), fine = errors(kFine);
-    const auto order = [&](const PhaseSpread& a, const PhaseSpread& b) {
+    const auto order = [&](const EntryPhaseSpread& a, const EntryPhaseSpread& b) {
       return std::log(a.rms / b.rms) / std::log(kFine / kCoarse);
     };
     validate({"V2.16", c.what + ": order of the error of v_t'", 2, c.order, "second order"},

@@ -1,12 +1,12 @@
-#include "sim/accuracy/phase_spread.hpp"
+#include "sim/accuracy/entry_phase_spread.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace twincell::sim {
 
-PhaseSpread PhaseSpread::of(const std::vector<double>& values, double exact) {
-  PhaseSpread s;
+EntryPhaseSpread EntryPhaseSpread::of(const std::vector<double>& values, double exact) {
+  EntryPhaseSpread s;
   const double n = static_cast<double>(values.size());
   for (const double value : values) {
     const double error = value - exact;

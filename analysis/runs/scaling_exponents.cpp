@@ -1,4 +1,4 @@
-#include "analysis/runs/length_power.hpp"
+#include "analysis/runs/scaling_exponents.hpp"
 
 #include <cstdlib>
 #include <sstream>

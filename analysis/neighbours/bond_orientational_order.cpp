@@ -1,4 +1,4 @@
-#include "analysis/neighbours/bond_orientation.hpp"
+#include "analysis/neighbours/bond_orientational_order.hpp"
 
 #include <array>
 #include <cmath>

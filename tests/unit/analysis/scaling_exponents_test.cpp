@@ -1,5 +1,5 @@
 // The power of the bead diameter in the units of results.
-#include "analysis/runs/length_power.hpp"
+#include "analysis/runs/scaling_exponents.hpp"
 
 #include <gtest/gtest.h>
 

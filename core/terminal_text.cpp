@@ -1,4 +1,4 @@
-#include "core/text_columns.hpp"
+#include "core/terminal_text.hpp"
 
 #include <algorithm>
 #include <sstream>

@@ -1,4 +1,4 @@
-#include "core/assignments.hpp"
+#include "core/key_assignments.hpp"
 
 #include <fmt/format.h>
 
