@@ -28,7 +28,7 @@ struct CompareOptions {
 std::string drive_disagreement(const H5mdReader& experiment) {
   const TrajectoryInfo& info = experiment.info();
   if (auto recorded = recorded_disagreement(info)) return *recorded;
-  if (info.source != "experiment" || !info.drive) return {};
+  if (info.source != Origin::experiment || !info.drive) return {};
   calibration::BedSteps bed(info);
   Frame frame;
   for (std::size_t f = 0; f < experiment.n_frames(); ++f) {

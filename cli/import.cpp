@@ -32,6 +32,7 @@ struct ImportOptions {
   std::vector<std::string> columns;
   const CLI::Option *sigma = nullptr, *gravity = nullptr;  ///< of `foreign`
   ForeignOptions foreign;
+  std::string source;  ///< word of kOrigins; empty: by the format
 };
 
 /// Hands frames on to a writer and watches them.
@@ -126,6 +127,7 @@ void set_foreign_options(ImportOptions& o, const ForeignFormat& format) {
     Vec3& corner = o.foreign.origin.emplace(Vec3::Zero());
     for (std::size_t k = 0; k < o.origin.size(); ++k) corner[static_cast<int>(k)] = o.origin[k];
   }
+  if (!o.source.empty()) o.foreign.source = row_named(kOrigins, o.source, "--source", "source").value;
   o.foreign.table_columns = named_columns(o.columns);
   const bool is_table = format.word == std::string_view("csv");
   if (!is_table && (!o.columns.empty() || o.foreign.y_up))
@@ -170,7 +172,7 @@ void run(ImportOptions& o, const Common& common) {
       {{"output", o.output},
        {"frames", source.n_frames()},
        {"beads", info.n_beads},
-       {"source", info.source},
+       {"source", word_of(info.source)},
        {"missing_beads", info.columns.identity}},
       fmt::format("{} of {}{}\n{}{}\n", plural(source.n_frames(), "frame"), plural(info.n_beads, "bead"),
                   info.columns.identity ? ", not all of them in every frame" : "",
@@ -206,10 +208,10 @@ void add_file_options(CLI::App& verb, Common& common, ImportOptions& o) {
          verb.add_option("-o,--output", o.output, "Trajectory file to write (H5MD)")->required(),
          Product::imported_trajectory());
   verb.add_option(
-          "--source", l.source,
+          "--source", o.source,
           "Where the beads come from: simulation, experiment or unknown. The beads of an experiment are "
           "neighbours up to 1.3 diameters, others up to 1.2. Default: by the format")
-      ->check(CLI::IsMember({"simulation", "experiment", "unknown"}))
+      ->check(CLI::IsMember(words_of(kOrigins)))
       ->option_text("WORD");
   verb.add_option("--dimension", l.dimension,
                   "Dimension of the system; 2: the plane (x, y) with y upwards; 3: z upwards")

@@ -26,7 +26,7 @@ nlohmann::json describe(const H5mdReader& file) {
   const TrajectoryInfo& t = file.info();
   nlohmann::json d;
   d["file"] = file.name();
-  d["source"] = t.source;
+  d["source"] = word_of(t.source);
   d["frames"] = file.n_frames();
   d["beads"] = t.n_beads;
   d["columns"] = nlohmann::json::array({"position"});

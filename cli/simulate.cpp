@@ -400,7 +400,7 @@ void add_simulate(CLI::App& program, Common& common) {
   verb.add_option("scene", options->scene, "Scene file (TOML, docs/scene.md)")->required();
   writes(common, verb,
          verb.add_option("-o,--output", options->output, "Trajectory file to write (H5MD)")->required(),
-         Product::trajectory("simulation"));
+         Product::trajectory(word_of(Origin::simulation)));
   verb.add_option("--set", options->assignments,
                   "Set a key of the scene, as section.key=value; overrides the file; may be repeated")
       ->take_all();

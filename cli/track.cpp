@@ -261,7 +261,7 @@ void add_track(CLI::App& program, Common& common) {
       ->required();
   writes(common, verb,
          verb.add_option("-o,--output", o->output, "Trajectory file to write (H5MD)")->required(),
-         Product::trajectory("experiment"));
+         Product::trajectory(word_of(Origin::experiment)));
   auto heading = std::make_unique<OptionHeading>(verb, "Cell and drive");
   verb.add_option("--cell", o->film.request.cell_file,
                   "CELL.toml with scale, origin, size and drive of the cell");

@@ -351,8 +351,8 @@ void bind_info(TrajectoryClass& bound) {
           "phases_per_cycle", [](const Trajectory& t) { return t.info().phases_per_cycle; },
           header_text(kHeader, "TrajectoryInfo::phases_per_cycle"))
       .def_property_readonly(
-          "source", [](const Trajectory& t) { return t.info().source; },
-          header_text(kHeader, "TrajectoryInfo::source"))
+          "source", [](const Trajectory& t) { return std::string(word_of(t.info().source)); },
+          header_text(kHeader, "Origin"))
       .def_property_readonly(
           "scale",
           [](const Trajectory& t) {
@@ -406,7 +406,7 @@ void bind_trajectory(py::module_& module) {
   bind_info(bound);
   bound.def(py::pickle(&pickled, &unpickled)).def("__repr__", [](const Trajectory& t) {
     return fmt::format("<twincell.Trajectory of {}: {} frames of {} beads, {}>", t.source().name(),
-                       t.n_frames(), t.info().n_beads, t.info().source);
+                       t.n_frames(), t.info().n_beads, word_of(t.info().source));
   });
 }
 

@@ -240,10 +240,7 @@ std::shared_ptr<Trajectory> from_arrays(const py::object& positions, const py::o
   TrajectoryInfo info;
   info.n_beads = static_cast<std::size_t>(beads);
   info.drive = drive;
-  if (source != "simulation" && source != "experiment" && source != "unknown")
-    throw ConfigError({.file = {}, .key = "source"},
-                      fmt::format("is '{}'; it must be simulation, experiment or unknown.", source));
-  info.source = source;
+  info.source = row_named(kOrigins, source, "source", "source").value;
   info.radius = numbers_of<double>(radii, "radii", beads, "beads");
   info.mass = numbers_of<double>(masses, "masses", beads, "beads");
   info.tracer = numbers_of<std::uint8_t>(tracers, "tracers", beads, "beads", 0, 1);

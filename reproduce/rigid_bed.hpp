@@ -43,7 +43,7 @@ struct RigidBed {
   int cycles = 10;
   double shear_per_cycle = 0;  ///< z_i += shear (x_i - middle) j
   bool velocities = true;
-  std::string source = "simulation";
+  Origin source = Origin::simulation;
 };
 
 /// Appends the bed's frames to `sink`.

@@ -7,6 +7,7 @@
 /// be missing from some frames. A slot that is empty in a frame has id -1 and position NaN, never zero. A
 /// column that was not measured is absent (an empty vector), never filled with substitutes.
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "core/choice.hpp"
 #include "trajectory/box.hpp"
 #include "trajectory/drive.hpp"
 #include "trajectory/units.hpp"
@@ -42,6 +44,19 @@ struct RunConditions {
   std::string start;            ///< start.kind of the scene of a simulation; empty: unknown or an experiment
 };
 
+/// Where the beads of a trajectory come from.
+enum class Origin { unknown, simulation, experiment };
+/// The words of all origins, as files, options and results state them. The first is the default.
+inline constexpr std::array kOrigins = {
+    Choice<Origin>{.value = Origin::unknown, .word = "unknown", .help = "not stated"},
+    Choice<Origin>{.value = Origin::simulation, .word = "simulation", .help = "computed"},
+    Choice<Origin>{.value = Origin::experiment, .word = "experiment", .help = "located in frames"}};
+
+/// The word of an origin.
+inline std::string word_of(Origin origin) {
+  return std::string(row_of(kOrigins, origin).word);
+}
+
 /// Data common to all frames.
 struct TrajectoryInfo {
   std::size_t n_beads = 0;  ///< slots
@@ -52,7 +67,7 @@ struct TrajectoryInfo {
   int samples_per_cycle = 0;  ///< of Frame::time_mean and force_mean; 0 if absent
   Scale scale;
   RunConditions conditions;
-  std::string source = "unknown";    ///< "simulation", "experiment" or "unknown"
+  Origin source = Origin::unknown;
   std::vector<double> radius;        ///< per slot, sigma; empty if absent
   std::vector<double> mass;          ///< per slot, m; empty if absent
   std::vector<std::uint8_t> tracer;  ///< per slot, 1 for a tracer bead; empty if absent

@@ -94,7 +94,7 @@ void check_sides(const Sides& sides, std::vector<std::string>& notes) {
       throw ConfigError({.file = run.name(), .key = "--" + analysis::side_name(sides.side_of(i))},
                         fmt::format("has {} dimensions, and {} has {}; compare them in two calls.",
                                     dimension(i), sides.trajectories[first]->name(), dimension(first)));
-    if (sides.side_of(i) == analysis::Side::experiment && run.info().source == "simulation")
+    if (sides.side_of(i) == analysis::Side::experiment && run.info().source == Origin::simulation)
       notes.push_back(fmt::format("{} is a simulation and is given as experiment.", run.name()));
   }
   note_unequal_beds(sides, ends, notes);

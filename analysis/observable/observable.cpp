@@ -9,7 +9,7 @@
 namespace twincell::analysis {
 
 double neighbour_cutoff(const TrajectoryInfo& info, const AnalysisOptions& options) {
-  return options.neighbour_cutoff.value_or(info.source == "experiment" ? 1.3 : 1.2);
+  return options.neighbour_cutoff.value_or(info.source == Origin::experiment ? 1.3 : 1.2);
 }
 
 bool AnalysisOptions::wants(const std::string& name) const {

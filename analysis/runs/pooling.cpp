@@ -501,7 +501,7 @@ std::vector<std::string> require_one_condition(const std::vector<const Trajector
                            100 * tolerance));
     };
     // Conditions: every run is compared with the first one.
-    words("source:", p.source, q.source);
+    words("source:", word_of(p.source), word_of(q.source));
     numbers("the dimension", p.box.dimension, q.box.dimension, 0);
     numbers("the number of phases per cycle", p.phases_per_cycle, q.phases_per_cycle, 0);
     words("drive:", p.drive ? "known" : "not known", q.drive ? "known" : "not known");
@@ -540,7 +540,7 @@ std::vector<std::string> require_one_condition(const std::vector<const Trajector
         refuse(*trajectories[k], b,
                "both contain the same run, bead for bead; another seed or repeat is needed to measure the "
                "scatter");
-      else if (q.source == "simulation" && trajectories[k]->info().source == "simulation" &&
+      else if (q.source == Origin::simulation && trajectories[k]->info().source == Origin::simulation &&
                !motions[i].empty() && motions[k] == motions[i])
         refuse(*trajectories[k], b,
                "both begin with the same bed, and differ at most in the tables [time] and [until]; another "

@@ -52,7 +52,7 @@ TrackPlan plan_trajectory(const TrackedStack& stack, const CellDescription& cell
   if (info.box.boundary[0] == Boundary::wall && cell.side_tilt) info.box.side_tilt = *cell.side_tilt;
   info.scale = cell.scale;
   info.scale.pixels_per_sigma = scale;
-  info.source = "experiment";
+  info.source = Origin::experiment;
   info.tracking_json = json_text(tracking_report(stack, plan, cell));
   return plan;
 }

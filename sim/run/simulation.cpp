@@ -80,7 +80,7 @@ std::vector<ContactMemory> readable(const Scene& scene, const Plan& plan,
 std::optional<double> steps_per_cycle_of_file(const Scene& scene) {
   if (scene.start != StartKind::trajectory) return std::nullopt;
   const H5mdReader file(scene.from);
-  if (file.info().source != "simulation" || !file.info().columns.contacts || !file.info().drive)
+  if (file.info().source != Origin::simulation || !file.info().columns.contacts || !file.info().drive)
     return std::nullopt;
   Frame frame;
   file.read(scene.frame, frame);
@@ -352,7 +352,7 @@ TrajectoryInfo Simulation::trajectory_info() const {
   info.phases_per_cycle = scene_.phases;
   info.scale = scene_.scale;
   info.conditions = conditions_of(scene_, system_.beads.size());
-  info.source = "simulation";
+  info.source = Origin::simulation;
   for (const Bead& b : system_.beads) {
     info.radius.push_back(b.radius);
     info.mass.push_back(b.mass);

@@ -87,8 +87,8 @@ Start start_in_motion(const Scene& scene, const TrajectoryInfo& info, const Fram
   const auto refuse = [&](const std::string& complaint) {
     throw ConfigError(scene.where("start.in_motion"), name + complaint);
   };
-  if (info.source != "simulation")
-    refuse(" has source \"" + info.source +
+  if (info.source != Origin::simulation)
+    refuse(" has source \"" + word_of(info.source) +
            "\"; only frames of a simulation contain the complete motion of a bed.");
   if (!info.columns.velocity) refuse(" has no velocities.");
   if (info.box.dimension != scene.dimension)
@@ -185,7 +185,7 @@ Start from_trajectory(const Scene& scene, Progress& progress) {
     throw ConfigError(scene.where("start.from"),
                       fmt::format("{} is three-dimensional, the cell is not; set cell.dimension = 3.",
                                   scene.from.string()));
-  const bool own_sizes = info.source == "simulation";
+  const bool own_sizes = info.source == Origin::simulation;
   if (own_sizes) {
     require_positive(scene, info.radius, "radius");
     require_positive(scene, info.mass, "mass");

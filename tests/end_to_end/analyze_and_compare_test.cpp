@@ -24,13 +24,13 @@ std::string film(const fs::path& path, const test::RigidBed& bed) {
   return path.string();
 }
 
-test::RigidBed bed(double gamma, double shear, const std::string& source) {
+test::RigidBed bed(double gamma, double shear, Origin source) {
   return {.gamma = gamma,
           .columns = 10,
           .rows = 6,
           .cycles = 8,
           .shear_per_cycle = shear,
-          .velocities = source == "simulation",
+          .velocities = source == Origin::simulation,
           .source = source};
 }
 
@@ -103,7 +103,7 @@ void check_parts(const nlohmann::json& differences) {
 
 TEST(Analyze, TextJsonAndFileSayTheSame) {
   const TemporaryFolder folder;
-  const std::string file = film(folder / "sim.h5", bed(1.5, 0, "simulation"));
+  const std::string file = film(folder / "sim.h5", bed(1.5, 0, Origin::simulation));
   const Ran text = run_program({"analyze", file});
   EXPECT_EQ(text.code, 0) << text.err;
   EXPECT_EQ(text.err, "");
@@ -132,7 +132,7 @@ TEST(Analyze, TextJsonAndFileSayTheSame) {
 
 TEST(Analyze, AbsentIsSaidInJson) {
   const TemporaryFolder folder;
-  const std::string file = film(folder / "exp.h5", bed(1.5, 0, "experiment"));
+  const std::string file = film(folder / "exp.h5", bed(1.5, 0, Origin::experiment));
   const Ran ran = run_program({"analyze", file, "--json", "-q", "--only", "T_g,s_c"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   const auto results = nlohmann::json::parse(ran.out)["results"];
@@ -143,7 +143,7 @@ TEST(Analyze, AbsentIsSaidInJson) {
 
 TEST(Analyze, Refusals) {
   const TemporaryFolder folder;
-  const std::string file = film(folder / "sim.h5", bed(1.5, 0, "simulation"));
+  const std::string file = film(folder / "sim.h5", bed(1.5, 0, Origin::simulation));
   EXPECT_EQ(run_program({"analyze", folder / "no.h5", "-q"}).code, 3);
   EXPECT_EQ(run_program({"analyze", file, "-q", "--only", "s_d"}).code, 2);
   EXPECT_EQ(run_program({"analyze", file, "-q", "--discard", "8"}).code, 2);
@@ -154,13 +154,13 @@ TEST(Analyze, Refusals) {
 TEST(Compare, OneReportWithEverythingInIt) {
   const TemporaryFolder folder;
   std::vector<std::string> words = {"compare", "-q", "--json", "-o", folder / "report", "--experiment"};
-  words.push_back(film(folder / "exp_a<&>.h5", bed(1.10, 0, "experiment")));
-  words.push_back(film(folder / "exp_b.h5", bed(1.50, 0, "experiment")));
-  words.push_back(film(folder / "exp_c.h5", bed(2.00, 0.2, "experiment")));
+  words.push_back(film(folder / "exp_a<&>.h5", bed(1.10, 0, Origin::experiment)));
+  words.push_back(film(folder / "exp_b.h5", bed(1.50, 0, Origin::experiment)));
+  words.push_back(film(folder / "exp_c.h5", bed(2.00, 0.2, Origin::experiment)));
   words.emplace_back("--simulation");
-  words.push_back(film(folder / "sim_a.h5", bed(1.105, 0, "simulation")));
-  words.push_back(film(folder / "sim_b.h5", bed(1.505, 0, "simulation")));
-  words.push_back(film(folder / "sim_c.h5", bed(2.00, 0, "simulation")));
+  words.push_back(film(folder / "sim_a.h5", bed(1.105, 0, Origin::simulation)));
+  words.push_back(film(folder / "sim_b.h5", bed(1.505, 0, Origin::simulation)));
+  words.push_back(film(folder / "sim_c.h5", bed(2.00, 0, Origin::simulation)));
   const Ran ran = run_program(words);
   ASSERT_EQ(ran.code, 0) << ran.err;
   const auto document = nlohmann::json::parse(ran.out);
@@ -215,7 +215,7 @@ TEST(Compare, OneReportWithEverythingInIt) {
 
 TEST(Compare, TextEndsWithThePathOfTheReport) {
   const TemporaryFolder folder;
-  const std::string one = film(folder / "exp.h5", bed(1.5, 0, "experiment"));
+  const std::string one = film(folder / "exp.h5", bed(1.5, 0, Origin::experiment));
   const Ran ran = run_program({"compare", "--experiment", one, "-o", folder / "report"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   EXPECT_NE(ran.out.find("only experiment"), std::string::npos);
@@ -225,7 +225,7 @@ TEST(Compare, TextEndsWithThePathOfTheReport) {
 
 TEST(Compare, Refusals) {
   const TemporaryFolder folder;
-  const std::string file = film(folder / "sim.h5", bed(1.5, 0, "simulation"));
+  const std::string file = film(folder / "sim.h5", bed(1.5, 0, Origin::simulation));
   EXPECT_EQ(run_program({"compare", "-q", "-o", folder / "report"}).code, 2);
   EXPECT_EQ(run_program({"compare", "-q", "--simulation", file}).code, 2);
   EXPECT_EQ(
@@ -236,7 +236,7 @@ TEST(Compare, Refusals) {
             3);
   EXPECT_EQ(run_program({"compare", "-q", "--simulation", folder / "no.h5", "-o", folder / "report"}).code,
             3);
-  test::RigidBed still = bed(1.5, 0, "simulation");
+  test::RigidBed still = bed(1.5, 0, Origin::simulation);
   TrajectoryInfo info = test::rigid_bed_info(still);
   {
     TrajectoryInfo undriven = info;

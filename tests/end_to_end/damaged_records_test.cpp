@@ -209,7 +209,7 @@ TEST_F(DamagedRecords, CollectedResults) {
 
 TEST_F(DamagedRecords, RecordsOfATrajectory) {
   MemoryTrajectory bed = test::rigid_bed(
-      {.gamma = 0.9, .columns = 3, .rows = 2, .phases = 4, .cycles = 2, .source = "experiment"});
+      {.gamma = 0.9, .columns = 3, .rows = 2, .phases = 4, .cycles = 2, .source = Origin::experiment});
   const json tracking = {{"camera",
                           {{"pixels_per_sigma", 12.0},
                            {"origin_px", {1.0, 2.0}},

@@ -657,7 +657,7 @@ TEST(Match, AMisstatedFrequencyMayBeTrusted) {
 TEST(Match, CompareChecksADriveThatNoTrackingHasChecked) {
   const TemporaryFolder folder;
   MemoryTrajectory bed =
-      test::rigid_bed({.gamma = 0.9, .rows = 5, .phases = 20, .cycles = 6, .source = "experiment"});
+      test::rigid_bed({.gamma = 0.9, .rows = 5, .phases = 20, .cycles = 6, .source = Origin::experiment});
   for (const double stated : {0.9, 0.9 / 1.6}) {
     bed.info().drive->amplitude = stated;
     const fs::path file = folder / ("states-" + std::to_string(stated) + ".h5");

@@ -302,6 +302,6 @@ const ForeignFormat bead_table_format = {
         -> std::unique_ptr<ForeignWriter> { return std::make_unique<TableWriter>(part, options); },
     .mark = all_headings(),
     .mark_is_first_line = true,
-    .source = "unknown"};
+    .source = Origin::unknown};
 
 }  // namespace twincell

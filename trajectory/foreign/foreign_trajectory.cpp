@@ -375,7 +375,7 @@ struct ForeignTrajectory::Impl {
   /// \param y_down whether y of the file increases downwards
   void complete(const ForeignFrame& first, const ForeignColumns& columns, bool y_down) {
     info.n_beads = ids.size();
-    info.source = o.source.empty() ? format->source : o.source;
+    info.source = o.source.value_or(format->source);
     const auto all = [&](const std::array<bool, 3>& of) {
       return of[0] && of[1] && (o.dimension == 2 || of[2]);
     };

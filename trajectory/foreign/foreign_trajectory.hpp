@@ -37,7 +37,7 @@ struct ForeignOptions {
   std::optional<long> tracer_type;  ///< type that marks tracers
   std::map<std::string, std::string> table_columns;  ///< ReadOptions::columns
   bool y_up = false;                                 ///< ReadOptions::y_up
-  std::string source;  ///< TrajectoryInfo::source; empty: that of most files of the format
+  std::optional<Origin> source;  ///< TrajectoryInfo::source; if absent, that of most files of the format
 };
 
 /// A file of another program, read in two passes: the first collects beads, box and columns, the second

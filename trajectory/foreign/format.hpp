@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "trajectory/foreign/foreign_frame.hpp"
+#include "trajectory/trajectory.hpp"
 
 namespace twincell {
 
@@ -44,8 +45,8 @@ struct ForeignFormat {
   /// Lines, one of which is in the first 4 KiB of every file that twincell writes in this format, and none in
   /// the files of other programs; empty: the format has no place for it.
   std::string_view mark;
-  bool mark_is_first_line = false;    ///< the first line is one of them, as a whole
-  const char* source = "simulation";  ///< TrajectoryInfo::source of what is read
+  bool mark_is_first_line = false;     ///< the first line is one of them, as a whole
+  Origin source = Origin::simulation;  ///< TrajectoryInfo::source of what is read
 };
 
 /// All formats, in the order of the help.

@@ -23,7 +23,7 @@ const std::vector<const ForeignFormat*>& foreign_formats() {
 namespace {
 
 template <class Has>
-std::string words_of(Has has) {
+std::string words_where(Has has) {
   std::string words;
   for (const ForeignFormat* format : foreign_formats())
     if (has(*format)) words += fmt::format("{}{}", words.empty() ? "" : ", ", format->word);
@@ -41,17 +41,17 @@ bool begins_as_dump(const std::filesystem::path& file) {
 }  // namespace
 
 std::string written_formats() {
-  return words_of([](const ForeignFormat& f) { return f.create != nullptr; });
+  return words_where([](const ForeignFormat& f) { return f.create != nullptr; });
 }
 std::string read_formats() {
-  return words_of([](const ForeignFormat& f) { return f.open != nullptr; });
+  return words_where([](const ForeignFormat& f) { return f.open != nullptr; });
 }
 
 const ForeignFormat& foreign_format(const std::string& word, const std::string& option) {
   for (const ForeignFormat* format : foreign_formats())
     if (format->word == word) return *format;
   throw ConfigError({"", 0, 0, option}, fmt::format("there is no format '{}'; there are: {}.", word,
-                                                    words_of([](const ForeignFormat&) { return true; })));
+                                                    words_where([](const ForeignFormat&) { return true; })));
 }
 
 const ForeignFormat* format_of_extension(std::string extension) {

@@ -262,6 +262,6 @@ const ForeignFormat track_mate_format = {
     .create = [](const std::filesystem::path& part, const WriteOptions& options)
         -> std::unique_ptr<ForeignWriter> { return std::make_unique<TrackMateWriter>(part, options); },
     .mark = kTrackMateMark,
-    .source = "experiment"};
+    .source = Origin::experiment};
 
 }  // namespace twincell

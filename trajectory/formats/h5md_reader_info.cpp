@@ -1,6 +1,7 @@
 // Reads from H5MD what does not change from frame to frame: cell, drive, scale, conditions of the run.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -93,7 +94,7 @@ void H5mdReader::Impl::require_box(const std::string& group) const {
 void H5mdReader::Impl::require_plate(const std::vector<std::int32_t>& phases,
                                      const std::vector<std::int64_t>& cycles) const {
   constexpr double kRounding = 1e-6;
-  if (info.source != "simulation" || !info.drive || info.drive->ramp || info.drive->recorded ||
+  if (info.source != Origin::simulation || !info.drive || info.drive->ramp || info.drive->recorded ||
       info.phases_per_cycle <= 0 || !plate_height)
     return;
   const auto heights = h5::read_dataset<double>(file.get(), "observables/plate_height/value");
@@ -188,7 +189,13 @@ void H5mdReader::Impl::read_parameters() {
       refuse("twincell@schema_version",
              fmt::format("{} is newer than this program's {}.", schema[0], kSchemaVersion));
     const auto source = h5::read_text_attribute(ours.get(), "source");
-    if (!source.empty()) info.source = source.front();
+    if (!source.empty()) {
+      const auto row = std::ranges::find(kOrigins, source.front(), &Choice<Origin>::word);
+      if (row == kOrigins.end())
+        refuse("twincell@source",
+               fmt::format("is '{}'; there are: {}.", source.front(), fmt::join(words_of(kOrigins), ", ")));
+      info.source = row->value;
+    }
     h5::read_text(ours.get(), "tracking", info.tracking_json);
   }
   read_drive();
@@ -224,7 +231,8 @@ void H5mdReader::Impl::read_parameters() {
 
 void H5mdReader::Impl::read_conditions() {
   if (!h5::exists(file.get(), "twincell/conditions")) {
-    if (info.source == "simulation") info.conditions.start = start_of_earlier_file(info.provenance_json);
+    if (info.source == Origin::simulation)
+      info.conditions.start = start_of_earlier_file(info.provenance_json);
     return;
   }
   const h5::Handle group = open_object(file.get(), "twincell/conditions");
@@ -262,7 +270,7 @@ void H5mdReader::Impl::check_gamma() {
 void H5mdReader::Impl::check_layers() {
   constexpr double kRounding = 1e-9;
   const double width = info.box.size().x();
-  if (info.source != "simulation" || !info.conditions.n_l || !(width > 0)) return;
+  if (info.source != Origin::simulation || !info.conditions.n_l || !(width > 0)) return;
   const double stated = *info.conditions.n_l, of_beads = static_cast<double>(info.n_beads) / width;
   if (std::abs(stated - of_beads) > kRounding * std::max(1.0, of_beads))
     refuse("twincell/conditions/n_l",

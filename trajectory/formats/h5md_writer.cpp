@@ -51,7 +51,7 @@ struct H5mdWriter::Impl {
   std::int64_t last_step = 0;
 
   Impl(const fs::path& final_path, TrajectoryInfo i)
-      : path(final_path, Product::trajectory(i.source)), info(std::move(i)) {}
+      : path(final_path, Product::trajectory(word_of(i.source))), info(std::move(i)) {}
 
   void create();
   void create_particles();
@@ -187,7 +187,7 @@ void H5mdWriter::Impl::create_parameters() {
 
   const h5::Handle ours = h5::create_group(file.get(), "twincell");
   h5::write_attribute(ours.get(), "schema_version", schema_needed(info));
-  h5::write_attribute(ours.get(), "source", info.source);
+  h5::write_attribute(ours.get(), "source", word_of(info.source));
   if (!info.tracking_json.empty()) h5::write_text(ours.get(), "tracking", info.tracking_json);
   const RunConditions& at = info.conditions;
   if (at.n_l || at.gamma || !at.start.empty()) {

@@ -21,7 +21,7 @@ class Endless : public TrajectorySource {
     info_.box.upper = Vec3(10, 1, 60);
     info_.drive = Drive{Axis::z, 1.2, 1};
     info_.phases_per_cycle = 20;
-    info_.source = "simulation";
+    info_.source = Origin::simulation;
   }
   [[nodiscard]] const TrajectoryInfo& info() const override { return info_; }
   [[nodiscard]] std::size_t n_frames() const override { return cycles_ * 20; }

@@ -121,7 +121,7 @@ TEST_F(ForeignFormats, WhatIsWrittenIsReadBack) {
       const MemoryTrajectory in = read(std::string(format->word), options);
       ASSERT_EQ(in.n_frames(), 3U);
       ASSERT_EQ(in.info().n_beads, 3U);
-      EXPECT_EQ(in.info().source, is_table ? "unknown" : "simulation");
+      EXPECT_EQ(in.info().source, is_table ? Origin::unknown : Origin::simulation);
       EXPECT_EQ(in.info().tracer, out.info().tracer);
       for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_NEAR(in.info().radius[i], out.info().radius[i], tolerance);
@@ -489,7 +489,7 @@ TEST_F(ForeignFormats, TrackMateTracks) {
     const MemoryTrajectory in = read("trackmate", options);
     ASSERT_EQ(in.n_frames(), 3U);
     ASSERT_EQ(in.info().n_beads, 3U);
-    EXPECT_EQ(in.info().source, "experiment");
+    EXPECT_EQ(in.info().source, Origin::experiment);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(in.info().radius[i], out.info().radius[i]);
     for (std::size_t f = 0; f < 3; ++f) {
       const Frame &a = in.frames()[f], &b = out.frames()[f];

@@ -30,7 +30,7 @@ TrajectoryInfo sound() {
   info.box.upper = Vec3(10, 1, 20);
   info.drive = Drive{Axis::z, 1.0, 2.0};
   info.phases_per_cycle = 20;
-  info.source = "simulation";
+  info.source = Origin::simulation;
   info.radius = {0.5, 0.5};
   info.mass = {1, 1};
   info.provenance_json = "{}";
@@ -153,6 +153,16 @@ TEST(H5mdRanges, AnUnknownAxisIsNoIndex) {
     h5::write_attribute(drive, "axis", 7);
   });
   expect_refused(file, "parameters/drive@axis: must be x, y or z");
+}
+
+TEST(H5mdRanges, AnUnknownSourceIsRefused) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "t.h5";
+  spoil(file, "twincell", [](hid_t ours) {
+    ASSERT_GE(H5Adelete(ours, "source"), 0);
+    h5::write_attribute(ours, "source", std::string("a dream"));
+  });
+  expect_refused(file, "twincell@source: is 'a dream'; there are: unknown, simulation, experiment");
 }
 
 // Opening a pipe without a writer never returns.

@@ -25,7 +25,7 @@ MemoryTrajectory seen(const TrajectorySource& run, double lowest, std::uint64_t 
   std::normal_distribution<double> noise(0, 0.02);
   TrajectoryInfo info = run.info();
   info.columns = {.identity = true, .phase = true};
-  info.source = "experiment";
+  info.source = Origin::experiment;
   MemoryTrajectory out(info);
   Frame frame;
   for (std::size_t f = 0; f < run.n_frames(); ++f) {

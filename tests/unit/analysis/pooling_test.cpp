@@ -240,7 +240,7 @@ TEST(Pooling, OtherConditionsAreRefused) {
 TEST(Pooling, PartsOfOneRunAreNoRepeats) {
   const auto run = [](double offset, const std::string& start, const std::string& time) {
     MemoryTrajectory t = bed(1.5, offset);
-    t.info().source = "simulation";
+    t.info().source = Origin::simulation;
     t.info().provenance_json =
         nlohmann::json{{"config", "[start]\nkind = 'random'\n" + start + "\n[time]\n" + time}}.dump();
     return t;
@@ -253,7 +253,7 @@ TEST(Pooling, PartsOfOneRunAreNoRepeats) {
   EXPECT_NO_THROW(require_one_condition({&shorter, &other}));
   EXPECT_NO_THROW(require_one_condition({&from_a, &from_b}));  // the file may have been another one
   MemoryTrajectory film = shorter, repeat = longer;  // of one cell, whose file the provenance contains
-  film.info().source = repeat.info().source = "experiment";
+  film.info().source = repeat.info().source = Origin::experiment;
   EXPECT_NO_THROW(require_one_condition({&film, &repeat}));
   // Nor are runs of one bed with other numerics.
   const MemoryTrajectory finer = run(0.2, "seed = 1\n", "cycles = 20\nsteps_per_contact = 50\n");

@@ -22,7 +22,7 @@ MemoryTrajectory ramped_run() {
   info.columns = {.velocity = true, .phase = true, .plate_height = true};
   info.box.upper = Vec3(3, 1, 10);
   info.phases_per_cycle = kPhases;
-  info.source = "simulation";
+  info.source = Origin::simulation;
   Drive drive{.amplitude = 1, .omega = 1};
   drive.ramp = DriveRamp{.from = {1, 1}, .to = {2, 1}, .power = 2, .first = 3, .cycles = 10};
   info.drive = drive;

@@ -549,9 +549,9 @@ TEST(Trajectory, SizesAreTheSimulationsNotTheCameras) {
   film.frame.position = {Vec3(2, 0, 1.5), Vec3(5, 0, 4)};
   film.info.radius = {0.6, 0.4};
   film.info.mass = {7, 2};
-  film.info.source = "experiment";
+  film.info.source = Origin::experiment;
   EXPECT_EQ(make_start(film.scene_of()).beads[0].radius, 0.5);
-  film.info.source = "simulation";
+  film.info.source = Origin::simulation;
   const auto beads = make_start(film.scene_of()).beads;
   EXPECT_EQ(beads[0].radius, 0.6);
   EXPECT_EQ(beads[0].mass, 7);

@@ -32,7 +32,7 @@ TrajectoryInfo experiment_info() {
   info.phases_per_cycle = 20;
   info.samples_per_cycle = 400;
   info.scale = {0.002, 9.81, std::nullopt};
-  info.source = "experiment";
+  info.source = Origin::experiment;
   info.radius = {0.5, 0.5, 0.49};
   info.tracer = {0, 1, 0};
   info.provenance_json = R"({"program":"twincell"})";
@@ -209,7 +209,7 @@ TEST(H5mdFile, TheConditionsOfARunAreStored) {
 
 TEST(H5mdFile, TheStartOfAnEarlierSimulationComesFromItsScene) {
   TrajectoryInfo info = experiment_info();
-  info.source = "simulation";
+  info.source = Origin::simulation;
   info.provenance_json = R"({"config": "[start]\nkind = \"random\"\n"})";
   EXPECT_EQ(conditions_through_file(info).start, "random");
   info.provenance_json = R"({"config": "[start\n"})";
@@ -256,7 +256,7 @@ TEST(H5mdFile, WhatIsWrittenIsReadBitForBit) {
   EXPECT_EQ(info.radius, (std::vector<double>{0.5, 0.5, 0.49}));
   EXPECT_EQ(info.tracer, (std::vector<std::uint8_t>{0, 1, 0}));
   EXPECT_TRUE(info.mass.empty());
-  EXPECT_EQ(info.source, "experiment");
+  EXPECT_EQ(info.source, Origin::experiment);
   Frame frame;
   for (int f : {44, 0, 17}) {
     reader.read(static_cast<std::size_t>(f), frame);

@@ -17,7 +17,7 @@ TEST(TrajectoryInfo, BeadsWithoutStoredSizeHaveTheUnits) {
 TEST(TrajectoryInfo, GravityIsThatOfTheRun) {
   TrajectoryInfo info;
   EXPECT_EQ(gravity_of(info), 1);
-  info.source = "simulation";
+  info.source = Origin::simulation;
   info.drive = Drive{.omega = 1, .gravity = 0.5};
   EXPECT_EQ(gravity_of(info), 0.5) << "of another program, which states no conditions";
   info.conditions.n_l = 6;

@@ -53,7 +53,7 @@ TrajectoryInfo info_of(std::size_t beads, int phases, const Vec3& upper) {
   info.drive = Drive{.amplitude = 1, .omega = 1};
   info.box.upper = upper;
   info.box.boundary[0] = Boundary::wall;
-  info.source = "simulation";
+  info.source = Origin::simulation;
   return info;
 }
 

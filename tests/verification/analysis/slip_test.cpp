@@ -36,7 +36,7 @@ Crystal crystal(int rows) {
   c.info.box.upper = Vec3(kColumns, 1, 100);
   c.info.box.boundary[0] = Boundary::periodic;
   c.info.phases_per_cycle = 1;
-  c.info.source = "simulation";
+  c.info.source = Origin::simulation;
   return c;
 }
 

@@ -132,7 +132,7 @@ TEST(DriftOfABed, ResultsCarryTheWordTheRateAndTheReason) {
 }
 
 TEST(DetectionLimits, StandBesideTheThreshold) {
-  MemoryTrajectory seen = test::rigid_bed({.gamma = 0.9, .cycles = 6, .source = "experiment"});
+  MemoryTrajectory seen = test::rigid_bed({.gamma = 0.9, .cycles = 6, .source = Origin::experiment});
   seen.info().scale.pixels_per_sigma = 20;
   seen.info().columns.position_sigma = true;
   MemoryTrajectory noisy(seen.info());
