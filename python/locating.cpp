@@ -315,6 +315,45 @@ py::object track(const py::object& said, TrackCall call, const py::object& callb
   return py::cast(trajectory);
 }
 
+/// Number of the track of each bead of a table, and whether its link is ambiguous, in the order of the
+/// frames.
+py::tuple link(const py::object& said, std::optional<double> search_range_px, int memory,
+               std::optional<double> diameter, const std::map<std::string, std::string>& columns,
+               const py::object& callback) {
+  if (diameter) require_range({.file = {}, .key = "diameter"}, *diameter, 0, std::nullopt, true);
+  imaging::LocatedTable beads =
+      imaging::read_located(table_of(said), {.columns = columns, .diameter_px = diameter, .picture = {}}, {});
+  imaging::LinkOptions options;
+  options.memory = memory;
+  if (search_range_px) {
+    constexpr double kMostDiameters = 10;  // LinkOptions::range_diameters
+    require_range({.file = {}, .key = "search_range"}, *search_range_px, 0,
+                  kMostDiameters * beads.diameter_px, true);
+    options.range_diameters = *search_range_px / beads.diameter_px;
+  }
+  const imaging::CellDescription anywhere;
+  const imaging::TrackedStack stack = unlocked(callback, [&](Progress& progress) {
+    return imaging::track_located(std::move(beads), options, anywhere, {}, {}, progress);
+  });
+  if (!stack.spacing_doubt.empty()) warn(stack.spacing_doubt);
+  for (const std::string& doubt : stack.doubts(anywhere)) warn(doubt);
+  std::vector<std::int64_t> particle;
+  std::vector<std::uint8_t> ambiguous;
+  for (std::size_t f = 0; f < stack.frames.size(); ++f)
+    for (const imaging::TrackedBead& bead : stack.frames[f]) {
+      particle.push_back(bead.track);
+      ambiguous.push_back(bead.ambiguous ? 1 : 0);
+    }
+  return py::make_tuple(array_of(std::move(particle)), array_of(std::move(ambiguous)).attr("astype")("bool"));
+}
+
+void bind_link(py::module_& module) {
+  module.def("link", &link, py::arg("beads"), py::kw_only(), py::arg("search_range") = py::none(),
+             py::arg("memory") = imaging::LinkOptions{}.memory, py::arg("diameter") = py::none(),
+             py::arg("columns") = std::map<std::string, std::string>{}, py::arg("callback") = py::none(),
+             header_text("imaging/track/located_table.hpp", "track_located"));
+}
+
 void bind_locate(py::module_& module) {
   const imaging::LocatorOptions locator;
   module.def(
@@ -420,6 +459,7 @@ void bind_track(py::module_& module) {
 
 void bind_locating(py::module_& module) {
   bind_locate(module);
+  bind_link(module);
   bind_track(module);
 }
 

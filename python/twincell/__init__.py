@@ -16,7 +16,9 @@ from ._program import (
     calibrate_beads, calibrate_camera, calibrate_contacts_bounce, calibrate_contacts_collisions,
     calibrate_contacts_infer, calibrate_contacts_numbers, calibrate_plate, calibrate_walls, compare, draw, export, import_, info,
     match, measure, new, render, reproduce, validate)
+from ._names import unknown as _unknown
 from ._scenes import simulate
+from ._tracks import compute_drift, emsd, filter_stubs, imsd, link, subtract_drift
 
 _name_functions(globals())
 
@@ -24,7 +26,11 @@ __all__ = [
     "Box", "ConfigError", "Drive", "Error", "Frames", "InputError", "Interrupted", "Result", "Results", "RunError",
     "Scene", "Simulation", "Trajectory", "Window", "__version__", "analyze", "analyze_windows", "bond_order", "calibrate_beads",
     "calibrate_camera", "calibrate_contacts_bounce", "calibrate_contacts_collisions", "calibrate_contacts_infer",
-    "calibrate_contacts_numbers", "calibrate_plate", "calibrate_walls", "compare", "coordination", "draw", "export", "fit",
-    "hexatic_order", "import_", "info", "laws", "locate", "match", "measure", "neighbours", "new",
-    "number_of_neighbours", "open_frames", "preset_names", "render", "reproduce",
-    "result_names", "simulate", "sweep", "track", "validate", "version", "voronoi"]
+    "calibrate_contacts_numbers", "calibrate_plate", "calibrate_walls", "compare", "compute_drift", "coordination", "draw", "emsd",
+    "export", "filter_stubs", "fit", "hexatic_order", "import_", "imsd", "info", "laws", "link", "locate", "match", "measure",
+    "neighbours", "new", "number_of_neighbours", "open_frames", "preset_names", "render", "reproduce", "result_names", "simulate",
+    "subtract_drift", "sweep", "track", "validate", "version", "voronoi"]
+
+
+def __getattr__(name):
+    raise _unknown(name, __all__)

@@ -1,4 +1,4 @@
-"""Compiled functions with a signature, and with a name by which pickle, and so multiprocessing, finds them."""
+"""Functions that name the nearest option for a wrong one; compiled ones with a signature, and with a name by which pickle finds them."""
 from __future__ import annotations
 
 import difflib
@@ -6,7 +6,7 @@ import functools
 import inspect
 import types
 
-from . import _core
+from . import _core, _names
 
 
 def _signature(function):
@@ -31,14 +31,16 @@ def _known(options, signature, name):
             option = plain
         if option not in signature.parameters:
             near = difflib.get_close_matches(option, signature.parameters, 1)
-            raise TypeError(f"{name}() has no argument '{option}'" + (f"; did you mean '{near[0]}'?" if near else "."))
+            here = _names.OPTIONS.get((name, option))
+            raise TypeError(f"{name}() has no argument '{option}'" + (
+                f"; here: {here}." if here else f"; did you mean '{near[0]}'?" if near else "."))
         known[option] = value
     return known
 
 
 def named(function, name):
     """`function` as the function `name` of the package."""
-    signature = _signature(function)
+    signature = _signature(function) if isinstance(function, types.BuiltinFunctionType) else inspect.signature(function)
 
     def call(*args, **options):
         return function(*args, **(options if signature is None else _known(options, signature, name)))
@@ -51,10 +53,18 @@ def named(function, name):
     return call
 
 
+def _states_options(thing):
+    """Whether a function of the package states all of its options: those that run the program do not."""
+    return inspect.isfunction(thing) and (thing.__module__ or "").startswith(__package__ + ".") and all(
+        p.kind is not p.VAR_KEYWORD for p in inspect.signature(thing).parameters.values())
+
+
 def name_functions(module):
-    """Names the compiled functions among the attributes of the package, and the static ones of its classes."""
+    """Names the functions among the attributes of the package, and the static compiled ones of its classes."""
     for name, thing in list(module.items()):
-        if isinstance(thing, types.BuiltinFunctionType):
+        if name.startswith("_"):
+            continue
+        if isinstance(thing, types.BuiltinFunctionType) or _states_options(thing):
             module[name] = named(thing, name)
         elif inspect.isclass(thing) and thing.__module__ == _core.__name__:
             for member, static in list(vars(thing).items()):

@@ -56,13 +56,8 @@ def _of_each(table, column, key, what):
     return of_key.first().to_numpy()
 
 
-def _from_dataframe(table, *, box=None, drive=None, phases_per_cycle=0, source="unknown", unwrap=True):
-    """The trajectory of a table in the columns of `to_dataframe`, whose inverse it is: frame, particle, x, y, ...
-
-    y is downwards, z of a three-dimensional table is the depth; lengths in bead diameters. Beads are numbered in the order
-    of `particle`, frames in that of `frame`; without a column step the step is `frame`. Further columns are left out. box,
-    drive, phases_per_cycle, source and unwrap as in `from_arrays`.
-    """
+def require_linked(table):
+    """Raises ConfigError for a table that is not that of linked beads: frame, particle, x, y, each bead once in a frame."""
     missing = [name for name in ("frame", "particle", "x", "y") if name not in table]
     if missing:
         raise _core.ConfigError(f"table: has no column {missing[0]}.")
@@ -70,6 +65,16 @@ def _from_dataframe(table, *, box=None, drive=None, phases_per_cycle=0, source="
         raise _core.ConfigError("table: has a row without a frame or a particle; linked beads are needed.")
     if table.duplicated(["frame", "particle"]).any():
         raise _core.ConfigError("table: has a particle twice in a frame.")
+
+
+def _from_dataframe(table, *, box=None, drive=None, phases_per_cycle=0, source="unknown", unwrap=True):
+    """The trajectory of a table in the columns of `to_dataframe`, whose inverse it is: frame, particle, x, y, ...
+
+    y is downwards, z of a three-dimensional table is the depth; lengths in bead diameters. Beads are numbered in the order
+    of `particle`, frames in that of `frame`; without a column step the step is `frame`. Further columns are left out. box,
+    drive, phases_per_cycle, source and unwrap as in `from_arrays`.
+    """
+    require_linked(table)
     frame, t = np.unique(table["frame"], return_inverse=True)
     particle, i = np.unique(table["particle"], return_inverse=True)
     deep = "z" in table
