@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "python/box.hpp"
+#include "trajectory/foreign/format.hpp"
 
 namespace twincell::python {
 
@@ -57,12 +58,40 @@ void require_no_input(const std::filesystem::path& output, const std::vector<std
   }
 }
 
+namespace {
+
+/// The function that makes a trajectory of a file or folder that is none; empty: none does.
+std::string advice_on_kind(const std::filesystem::path& path) {
+  std::error_code none;
+  const std::string extension = path.extension().string();
+  const auto of = [&](const char* call, const std::string& options, const char* kind) {
+    return fmt::format("{}(\"{}\"{}) makes a trajectory of {}", call, path.string(), options, kind);
+  };
+  if (std::filesystem::is_directory(path, none)) return of("track", "", "a stack of frames");
+  if (!std::filesystem::exists(path, none)) return {};
+  if (extension == ".toml") return of("simulate", "", "a scene");
+  if (format_of_extension(extension) == nullptr) return {};
+  return of("import_", fmt::format(", output=\"{}.h5\"", path.stem().string()), "a file of another program");
+}
+
+}  // namespace
+
+std::shared_ptr<Trajectory> open_trajectory(const std::filesystem::path& path) {
+  try {
+    return std::make_shared<Trajectory>(path);
+  } catch (const InputError& e) {
+    const std::string advice = advice_on_kind(path);
+    if (advice.empty()) throw;
+    throw InputError({}, fmt::format("{}; {}.", without_full_stop(e.what()), advice));
+  }
+}
+
 std::shared_ptr<Trajectory> trajectory_of(const py::handle& said) {
   if (py::isinstance<Trajectory>(said)) return said.cast<std::shared_ptr<Trajectory>>();
   if (!py::isinstance<py::str>(said) && !py::hasattr(said, "__fspath__"))
     throw py::type_error(fmt::format("a Trajectory or the name of its file is needed, not {}",
                                      py::str(py::type::of(said).attr("__name__")).cast<std::string>()));
-  return std::make_shared<Trajectory>(said.cast<std::filesystem::path>());
+  return open_trajectory(said.cast<std::filesystem::path>());
 }
 
 namespace {
@@ -256,9 +285,8 @@ using TrajectoryClass = py::class_<Trajectory, std::shared_ptr<Trajectory>>;
 
 void bind_making(TrajectoryClass& bound) {
   bound
-      .def_static(
-          "open", [](const std::filesystem::path& path) { return std::make_shared<Trajectory>(path); },
-          py::arg("path"), header_text("trajectory/formats/h5md_file.hpp", "H5mdReader"))
+      .def_static("open", &open_trajectory, py::arg("path"),
+                  header_text("trajectory/formats/h5md_file.hpp", "H5mdReader"))
       .def("write", &write, py::arg("path"), header_text("trajectory/formats/h5md_file.hpp", "H5mdWriter"));
 }
 

@@ -76,6 +76,11 @@ class Trajectory {
   std::size_t last_index_ = 0;
 };
 
+/// The trajectory of a file (H5MD).
+/// \throws InputError as H5mdReader, which for a file of another program, a scene and a folder names the
+/// function that makes a trajectory of it
+std::shared_ptr<Trajectory> open_trajectory(const std::filesystem::path& path);
+
 /// The trajectory of an argument: a Trajectory, or the name of a file.
 /// \throws TypeError for anything else
 std::shared_ptr<Trajectory> trajectory_of(const py::handle& said);

@@ -1,5 +1,6 @@
 """Frames, trajectories and their analysis from Python."""
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -593,3 +594,22 @@ def test_stubs_name_everything():
             assert not isinstance(node, ast.Name) or node.id in known, (function.name, node.id)
     stub = (Path(core.__file__).parent / "_core.pyi").read_text()
     assert stub.count("os.PathLike") == stub.count("str | os.PathLike[str]") > 0
+
+
+@pytest.mark.parametrize("name, call", [
+    ("run.dump", r'import_\("{0}", output="run.h5"\) makes a trajectory of a file of another program\.$'),
+    ("run.gsd", r'import_\("{0}", output="run.h5"\)'), ("run.xyz", r'import_\('), ("run.csv", r'import_\('),
+    ("scene.toml", r'simulate\("{0}"\) makes a trajectory of a scene\.$'), ("film", r'track\("{0}"\) makes a trajectory of a stack'),
+])
+def test_a_file_that_is_no_trajectory_names_the_function_for_it(tmp_path, name, call):
+    path = tmp_path / name
+    if "." in name:
+        path.write_text("ITEM: TIMESTEP\n")
+    else:
+        path.mkdir()
+    for opened in (twincell.Trajectory.open, twincell.analyze):
+        with pytest.raises(OSError, match=call.format(re.escape(str(path)))):
+            opened(path)
+    with pytest.raises(OSError) as raised:
+        twincell.Trajectory.open(tmp_path / f"no-{name}")
+    assert "makes a trajectory" not in str(raised.value)
