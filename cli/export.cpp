@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -34,12 +35,15 @@ Product deck_folder() {
 struct ExportOptions {
   std::string input, format, output, from, units = "sigma";
   std::size_t frame = 0;
+  bool complete = false;
   std::vector<std::string> assignments;
 };
 
 void export_scene(const ExportOptions& o, const Common& common) {
   if (o.units != "sigma")
     throw ConfigError({"", 0, 0, "--units"}, "applies to a trajectory; a deck is in the units of the scene.");
+  if (o.complete)
+    throw ConfigError({"", 0, 0, "--complete"}, "applies to a trajectory; the input is a scene.");
   std::vector<std::string> assignments = with_seed(o.assignments, common);
   sim::Scene scene = sim::read_scene(o.input, assignments);
   protect_named_inputs(common, scene.named_files());
@@ -99,6 +103,11 @@ class WatchedSource : public TrajectorySource {
   mutable bool has_gaps_ = false;
 };
 
+/// Whether programs that read the format take the place of a bead in the list of a frame for its identity.
+bool identifies_by_order(const ForeignFormat& format) {
+  return format.word == "xyz" || format.word == "lammps-dump" || format.word == "gsd";
+}
+
 void export_beads(const ExportOptions& o, const Common& common) {
   const auto refuse = [](const char* option, const char* why) { throw ConfigError({"", 0, 0, option}, why); };
   if (common.seed) refuse("--seed", "applies to a scene; the input is a trajectory.");
@@ -118,26 +127,36 @@ void export_beads(const ExportOptions& o, const Common& common) {
   const ExportUnits units = o.units == "mm" ? ExportUnits::laboratory(trajectory.info(), "--units")
                                             : ExportUnits::reduced(trajectory.info());
   const WatchedSource source(trajectory);
+  std::vector<bool> left_out;
+  if (o.complete) {
+    ProgressBar looking(common, "looking for missing beads");
+    left_out = incomplete_slots(trajectory, looking);
+  }
+  const auto n_left_out = static_cast<std::size_t>(std::count(left_out.begin(), left_out.end(), true));
+  if (n_left_out > 0 && n_left_out == left_out.size())
+    throw InputError({o.input, 0, 0, "--complete"}, "no bead is in all frames.");
   AtomicPath written(o.output, product);
   ProgressBar progress(common, "writing");
   const std::size_t frames = export_trajectory(source, format, units, written.part(), output.stem().string(),
-                                               progress, bond_orders(trajectory.info()));
+                                               progress, bond_orders(trajectory.info()), left_out);
   written.commit();
-  if (source.has_gaps() &&
-      (format.word == std::string_view("xyz") || format.word == std::string_view("lammps-dump")))
+  if (!o.complete && source.has_gaps() && identifies_by_order(format))
     note(common,
-         "beads are missing in some frames; MDAnalysis needs the same number in all frames, OVITO does not; "
-         "gsd and csv state which beads are missing.");
+         "beads are missing in some frames, but MDAnalysis, HOOMD-blue and freud take the place of a bead in "
+         "the list of a frame for its identity: --complete writes only the beads that are in all frames.");
   print_result(
       common,
       {{"output", o.output},
        {"format", format.word},
        {"frames", frames},
-       {"beads", trajectory.info().n_beads},
+       {"beads", trajectory.info().n_beads - n_left_out},
+       {"left_out", n_left_out},
        {"length_unit", units.length_unit},
        {"time_unit", units.time_unit}},
-      fmt::format("{} of {}, lengths in {}, times in {}\n{}\n", plural(frames, "frame"),
-                  plural(trajectory.info().n_beads, "bead"), units.length_unit, units.time_unit, o.output));
+      fmt::format("{} of {}{}, lengths in {}, times in {}\n{}\n", plural(frames, "frame"),
+                  plural(trajectory.info().n_beads - n_left_out, "bead"),
+                  n_left_out > 0 ? fmt::format(" ({} missing in some frames left out)", n_left_out) : "",
+                  units.length_unit, units.time_unit, o.output));
 }
 
 void run(const ExportOptions& o, const Common& common) {
@@ -193,6 +212,9 @@ void add_export(CLI::App& program, Common& common) {
           "trajectory states its scale")
       ->check(CLI::IsMember({"sigma", "mm"}))
       ->capture_default_str();
+  verb.add_flag("--complete", o->complete,
+                "Write only the beads that are in all frames of a trajectory, for programs that take the "
+                "order of the beads for their identity");
   verb.add_option("--set", o->assignments,
                   "Set a key of the scene, as section.key=value; overrides the file; may be repeated")
       ->take_all();

@@ -321,6 +321,7 @@ TEST_F(Refusals, NumbersInOptions) {
        {"locate @mixed -o @new.csv --scored-rows 3 9", kUsage, {"--scored-rows", "--truth"}},
        {"draw @t.h5 -o @new.html --fps 0", kUsage, {"--fps", "0.01"}},
        {"export @s.toml --to lammps --units mm -o @new", kUsage, {"--units", "trajectory"}},
+       {"export @s.toml --to lammps --complete -o @new", kUsage, {"--complete", "trajectory"}},
        {"export @t.h5 --to xyz --seed 3 -o @new.xyz", kUsage, {"--seed", "scene"}},
        {"analyze @t.h5 --seed 3", kUsage, {"--seed"}},
        {"locate @mixed -o @mixed/new.png", kUsage, {"new.png", "is an input", "one of its frames"}},

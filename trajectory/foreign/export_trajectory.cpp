@@ -54,14 +54,18 @@ void set_box(ForeignFrame& s, const TrajectoryInfo& info, const ExportUnits& uni
   s.upper *= units.length;
 }
 
-void add_contacts(ForeignFrame& s, const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units) {
+/// \param is_left_out of a slot
+template <class IsLeftOut>
+void add_contacts(ForeignFrame& s, const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units,
+                  const IsLeftOut& is_left_out) {
   const int dimension = info.box.dimension;
   const auto radius = [&](std::int32_t bead) {
     return radius_of(info.radius, static_cast<std::size_t>(bead));
   };
   for (const ContactForce& c : frame.contact_forces) {
     const Vec3& centre = frame.position[static_cast<std::size_t>(c.i)];
-    if (!centre.allFinite()) continue;
+    if (!centre.allFinite() || is_left_out(static_cast<std::size_t>(c.i))) continue;
+    if (c.j >= 0 && is_left_out(static_cast<std::size_t>(c.j))) continue;
     const double length = radius(c.i) + (c.j >= 0 ? radius(c.j) : 0) - c.overlap;
     s.contacts.push_back({.i = c.i,
                           .j = c.j,
@@ -71,6 +75,10 @@ void add_contacts(ForeignFrame& s, const Frame& frame, const TrajectoryInfo& inf
                           .normal_force = c.normal_force,
                           .tangential_force = turned(c.tangential_force, dimension)});
   }
+}
+
+bool is_present(const Frame& frame, std::size_t slot) {
+  return frame.present(slot) && frame.position[slot].allFinite();
 }
 
 }  // namespace
@@ -95,8 +103,10 @@ ExportUnits ExportUnits::laboratory(const TrajectoryInfo& info, const std::strin
 }
 
 ForeignFrame foreign_frame_of(const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units,
-                              const std::vector<std::vector<double>>& numbers) {
+                              const std::vector<std::vector<double>>& numbers,
+                              const std::vector<bool>& left_out) {
   const int dimension = info.box.dimension;
+  const auto is_left_out = [&](std::size_t slot) { return !left_out.empty() && left_out[slot]; };
   ForeignFrame s;
   s.step = frame.step;
   s.time = frame.time * units.time;
@@ -104,10 +114,10 @@ ForeignFrame foreign_frame_of(const Frame& frame, const TrajectoryInfo& info, co
   if (info.columns.phase && frame.cycle >= 0) s.cycle = frame.cycle;
   if (std::isfinite(frame.plate_height)) s.plate_height = frame.plate_height * units.length;
   set_box(s, info, units);
-  add_contacts(s, frame, info, units);
+  add_contacts(s, frame, info, units, is_left_out);
   s.numbers.resize(numbers.size());
   for (std::size_t i = 0; i < info.n_beads; ++i) {
-    if (!frame.present(i) || !frame.position[i].allFinite()) continue;
+    if (!is_present(frame, i) || is_left_out(i)) continue;
     ForeignBead bead;
     bead.id = static_cast<std::int64_t>(i);
     bead.type = !info.tracer.empty() && info.tracer[i] != 0 ? 2 : 1;
@@ -132,9 +142,22 @@ ForeignFrame foreign_frame_of(const Frame& frame, const TrajectoryInfo& info, co
   return s;
 }
 
+std::vector<bool> incomplete_slots(const TrajectorySource& source, Progress& progress) {
+  std::vector<bool> incomplete(source.info().n_beads);
+  Frame frame;
+  for (std::size_t t = 0; t < source.n_frames(); ++t) {
+    source.read(t, frame);
+    for (std::size_t i = 0; i < incomplete.size(); ++i)
+      if (!is_present(frame, i)) incomplete[i] = true;
+    progress.update(static_cast<std::int64_t>(t + 1), static_cast<std::int64_t>(source.n_frames()));
+  }
+  return incomplete;
+}
+
 std::size_t export_trajectory(const TrajectorySource& source, const ForeignFormat& format,
                               const ExportUnits& units, const std::filesystem::path& part,
-                              const std::string& stem, Progress& progress, const BeadNumbers& numbers) {
+                              const std::string& stem, Progress& progress, const BeadNumbers& numbers,
+                              const std::vector<bool>& left_out) {
   const TrajectoryInfo& info = source.info();
   const bool more = format.numbers && numbers.of;
   ForeignColumns columns = columns_of(info);
@@ -147,8 +170,8 @@ std::size_t export_trajectory(const TrajectorySource& source, const ForeignForma
   Frame frame;
   for (std::size_t t = 0; t < source.n_frames(); ++t) {
     source.read(t, frame);
-    writer->append(
-        foreign_frame_of(frame, info, units, more ? numbers.of(frame) : std::vector<std::vector<double>>{}));
+    writer->append(foreign_frame_of(frame, info, units,
+                                    more ? numbers.of(frame) : std::vector<std::vector<double>>{}, left_out));
     progress.update(static_cast<std::int64_t>(t + 1), static_cast<std::int64_t>(source.n_frames()));
   }
   writer->finish();

@@ -37,15 +37,21 @@ struct BeadNumbers {
 /// The box is that of the cell, lower by the amplitude of the drive along its axis, and wider where the
 /// centre of a bead lies beyond it.
 /// \param numbers BeadNumbers::of the frame
+/// \param left_out slots that are left out, with their contacts; empty: none
 ForeignFrame foreign_frame_of(const Frame& frame, const TrajectoryInfo& info, const ExportUnits& units,
-                              const std::vector<std::vector<double>>& numbers = {});
+                              const std::vector<std::vector<double>>& numbers = {},
+                              const std::vector<bool>& left_out = {});
+
+/// The slots that hold no bead in at least one frame.
+std::vector<bool> incomplete_slots(const TrajectorySource& source, Progress& progress = Progress::none());
 
 /// Writes all frames to `part`, a file or a folder, with `numbers` if the format carries them.
+/// \param left_out as foreign_frame_of
 /// \returns the number of frames
 /// \throws RunError if it cannot be written
 std::size_t export_trajectory(const TrajectorySource& source, const ForeignFormat& format,
                               const ExportUnits& units, const std::filesystem::path& part,
                               const std::string& stem, Progress& progress = Progress::none(),
-                              const BeadNumbers& numbers = {});
+                              const BeadNumbers& numbers = {}, const std::vector<bool>& left_out = {});
 
 }  // namespace twincell

@@ -194,6 +194,33 @@ def test_only_missing_beads_are_noted(tracked, tmp_path, recwarn):
         twincell.export(twincell.Trajectory.from_arrays(positions), to="xyz", output=tmp_path / "gaps.xyz")
 
 
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_complete_beads_keep_their_places_in_other_programs(tmp_path, dimension):
+    mda = pytest.importorskip("MDAnalysis", reason="python3-mdanalysis is missing")
+    x = np.add.outer(0.1 * np.arange(3), 1 + 2.0 * np.arange(5))
+    r = np.stack([x] + [np.full_like(x, 0.5)] * (dimension - 1), axis=-1)
+    r[0, 3] = r[1, 1] = np.nan  # frames 0 and 1 have four beads each, but not the same ones
+    gaps = twincell.Trajectory.from_arrays(r)
+    dump = {"format": "LAMMPSDUMP", "topology_format": "LAMMPSDUMP"}
+    for word, end, options in (("xyz", "xyz", {}), ("lammps-dump", "dump", dump), ("gsd", "gsd", {})):
+        path = tmp_path / f"run.{end}"
+        said = twincell.export(gaps, to=word, output=path, complete=True)
+        assert (said["beads"], said["left_out"]) == (3, 2)
+        seen = np.array([ts.positions[:, 0].copy() for ts in mda.Universe(str(path), **options).trajectory])
+        assert seen.shape == (3, 3)
+        assert np.allclose(seen - seen[0, 0], x[:, [0, 2, 4]] - x[0, 0], atol=1e-5), word
+        with pytest.warns(UserWarning, match="complete writes only the beads that are in all frames"):
+            twincell.export(gaps, to=word, output=tmp_path / f"gaps.{end}")
+    table = tmp_path / "run.csv"
+    twincell.export(gaps, to="csv", output=table, complete=True)  # the numbers remain those of the trajectory
+    assert sorted(set(np.loadtxt(table, delimiter=",", skiprows=1, usecols=1))) == [0, 2, 4]
+    nobody = np.full((2, 2, 2), np.nan)
+    nobody[0, 0] = nobody[1, 1] = 1
+    with pytest.raises(OSError, match="complete: no bead is in all frames"):
+        twincell.export(twincell.Trajectory.from_arrays(nobody), to="xyz", output=tmp_path / "none.xyz", complete=True)
+
+
 def test_pairs_of_numbers_are_tuples(sim_file, tmp_path):
     dump = tmp_path / "beads.xyz"
     twincell.export(sim_file, to="xyz", output=dump)
