@@ -72,6 +72,15 @@ def simulate(scene, output=None, *, set=(), relax=False, contacts=False, seed=No
     return _core.simulate(scene, output, threads=threads, callback=callback)
 
 
+def _lacks(self, name):
+    said = f"'Simulation' object has no attribute '{name}'"
+    if name in ("drive", "set_drive", "gamma", "omega", "amplitude"):
+        said += ("; the drive is that of the scene, Scene.drive, and changes during a run only as its drive.ramp, drive.schedule or "
+                 "drive.file states.")
+    raise AttributeError(said)
+
+
+_core.Simulation.__getattr__ = _lacks
 _core.Scene._from_toml = _core.Scene.from_toml
 _from_toml.__doc__ = (_core.Scene.from_toml.__doc__ or "").partition("\n\n")[2]
 _core.Scene.from_toml = staticmethod(_from_toml)

@@ -218,3 +218,13 @@ def test_wrong_scenes_have_the_sentence_of_the_program(scene_file, tmp_path):
     assert str(raised.value) == said
     with pytest.raises(ValueError, match="no counterpart"):
         twincell.Scene.from_dict({"drive": {"gamma": None}})
+
+
+def test_the_drive_of_a_run_is_that_of_its_scene():
+    sim = twincell.Simulation(twincell.Scene.from_dict(SCENE))
+    for name in ("drive", "set_drive"):
+        with pytest.raises(AttributeError, match=f"no attribute '{name}'; the drive is that of the scene.* drive.ramp"):
+            getattr(sim, name)
+    with pytest.raises(AttributeError, match="no attribute 'zzz'$"):
+        sim.zzz
+    assert sim.time == 0 and not hasattr(sim, "__array__")
