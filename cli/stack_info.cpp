@@ -9,6 +9,7 @@
 #include "cli/output.hpp"
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
+#include "core/hdf5_open.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/stack/repeated_frames.hpp"
 

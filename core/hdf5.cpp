@@ -106,13 +106,6 @@ void quiet() {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
-Handle open_file(const std::filesystem::path& file) {
-  quiet();
-  std::error_code ec;
-  if (!std::filesystem::is_regular_file(file, ec)) return {};
-  return Handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-}
-
 template <>
 hid_t native<double>() {
   return H5T_NATIVE_DOUBLE;

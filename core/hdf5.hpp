@@ -43,10 +43,6 @@ void check(herr_t status, const std::string& what);
 /// exit, if called before any other HDF5 function. Every function that opens a file calls this.
 void quiet();
 
-/// Opens a file for reading. The result converts to false if it cannot be opened, is not HDF5 or is not a
-/// regular file: opening a pipe without a writer would never return.
-Handle open_file(const std::filesystem::path& file);
-
 /// Native memory type of T: double, int, std::int64_t, std::uint8_t, std::int8_t.
 template <class T>
 hid_t native();

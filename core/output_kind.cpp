@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/hdf5.hpp"
+#include "core/hdf5_open.hpp"
 
 namespace twincell {
 

@@ -13,6 +13,7 @@
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
+#include "core/hdf5_open.hpp"
 #include "core/provenance.hpp"
 #include "core/sha256.hpp"
 

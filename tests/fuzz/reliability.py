@@ -71,7 +71,8 @@ def page():
             "`./run` wrote this page from docs/reliability.csv, which it keeps.", "",
             "**Fuzzing of readers** (`./run reliability`), as counted by clang's libFuzzer. It varies the files of `tests/fuzz/corpus` at",
             "random and keeps the variants that reach new code. A finding is an input that crashes the reader, takes 20 s, asks for more",
-            "than a gigabyte, or causes an exception without a message for a user. `SECURITY.md` describes the findings of `hdf5`.",
+            "than a gigabyte, or causes an exception without a message for a user.",
+            "The findings of `hdf5` are of the HDF5 library, from before a child process tried each file first (`SECURITY.md`).",
             "", "| campaign | reader | executions | findings | last run | commit | sanitizers |", "|---|---|---|---|---|---|---|"]
     table = lambda found: [f"| {' | '.join(str(r[c]) for c in [*COLUMNS[:4], 'date', 'commit', 'sanitizers'])} |" for r in found]
     fuzz = summed((r for r in rows() if r["campaign"] == "fuzz"), without=["date"])

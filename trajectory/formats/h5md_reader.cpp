@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/hdf5_open.hpp"
 #include "core/hdf5_self_contained.hpp"
 #include "trajectory/formats/h5md_names.hpp"
 #include "trajectory/formats/h5md_reader_impl.hpp"

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
+#include "core/hdf5_open.hpp"
 #include "core/hdf5_self_contained.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 #include "trajectory/ranges.hpp"

@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "core/hdf5.hpp"
+#include "core/hdf5_open.hpp"
 #include "core/hdf5_self_contained.hpp"
 #include "imaging/stack/formats/byte_file.hpp"
 #include "imaging/stack/formats/reader.hpp"
@@ -23,11 +24,6 @@ struct Found {
   std::string path;
   std::vector<hsize_t> shape;
 };
-
-h5::Handle open_file(const fs::path& file) {
-  h5::quiet();
-  return h5::own(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), file.string() + ": opening it");
-}
 
 bool is_number(hid_t dataset) {
   const h5::Handle type(H5Dget_type(dataset));
@@ -89,7 +85,8 @@ class Hdf5Stack final : public FrameSource {
 
  private:
   void open(const std::string& inside) {
-    const h5::Handle file = open_file(file_);
+    const h5::Handle file = h5::open_file(file_);
+    if (!file) h5::check(-1, file_.string() + ": opening it");
     if (const std::string elsewhere = h5::data_elsewhere(file.get()); !elsewhere.empty())
       refuse(file_, elsewhere);
     path_ = inside.empty() ? the_only_one(file.get()) : inside;
