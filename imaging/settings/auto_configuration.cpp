@@ -147,11 +147,18 @@ std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOp
 
 namespace {
 
+/// A range of the contrast of discs.
+struct Contrasts {
+  double least, below;
+};
+constexpr Contrasts kPaleContrasts{0, kPale}, kGreyContrasts{kPale, 0.7};
+
 /// Sizes proposed by the votes of one or both polarities, and the lattice constant; the given size if one is
 /// given.
-/// \param pale instead those of pale discs, whose gradients are too weak to vote, if there may be any
+/// \param of if given, instead those of discs of the contrast of the picture, if this is in the range: the
+///     gradients of pale discs are too weak to vote
 std::vector<Hypothesis> hypotheses(const cv::Mat& grey, const LocatorOptions& given, double lattice,
-                                   bool pale = false) {
+                                   const std::optional<Contrasts>& of = {}) {
   constexpr double kNoisy = 0.04, kSmooth = 1;  // darkness; px
   std::vector<Hypothesis> all;
   const double largest = std::min(kLargestRadius, 0.5 * std::min(grey.cols, grey.rows));
@@ -162,8 +169,8 @@ std::vector<Hypothesis> hypotheses(const cv::Mat& grey, const LocatorOptions& gi
     options.bright = bright;
     cv::Mat1f darkness =
         prepare(grey, options, given.diameter_px > 0 ? given.diameter_px / 2 : largest).darkness;
-    const double contrast = pale ? contrast_of(darkness) : 1;
-    if (pale && contrast >= kPale) continue;
+    const double contrast = of ? contrast_of(darkness) : 1;
+    if (of && (contrast < of->least || contrast >= of->below)) continue;
     if (given.diameter_px > 0) {
       all.push_back({bright, given.diameter_px, contrast});
       continue;
@@ -212,7 +219,7 @@ struct PaleDiscs {
 PaleDiscs find_pale(const cv::Mat& grey, const LocatorOptions& given, double lattice,
                     std::vector<Hypothesis> sizes, const std::optional<FoundSettings>& best) {
   if (model_of(given.refine) != DiscModel::plain) return {};
-  std::vector<Hypothesis> all = hypotheses(grey, given, lattice, true);
+  std::vector<Hypothesis> all = hypotheses(grey, given, lattice, kPaleContrasts);
   if (all.empty() && best) {
     constexpr double kSameSize = 0.2;  // pale discs are at best found with another model, of about their size
     std::erase_if(sizes, [&](const Hypothesis& h) {
@@ -238,6 +245,22 @@ PaleDiscs find_pale(const cv::Mat& grey, const LocatorOptions& given, double lat
     pale = {FoundSettings{trial.diameter_px, h.bright, trial.explained, {}, {}, h.contrast}, comparable};
   }
   return pale;
+}
+
+/// Plain discs as dark as the picture shows, if that is grey. Discs with patterns inside, such as small
+/// photoelastic ones, are grey in the mean and have no common profile, but their rims do not differ; as
+/// opaque discs those with a bright middle would be dropped.
+std::vector<FoundSettings> find_grey(const cv::Mat& grey, const LocatorOptions& given, double lattice,
+                                     int threads) {
+  if (model_of(given.refine) != DiscModel::plain) return {};
+  const std::vector<Hypothesis> all = hypotheses(grey, given, lattice, kGreyContrasts);
+  std::vector<Trial> trials(all.size());
+  in_parallel(all.size(), threads, [&](std::size_t k) { trials[k] = settle_plain(grey, given, all[k]); });
+  std::vector<FoundSettings> found;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (trials[k].explained > 0)
+      found.push_back({trials[k].diameter_px, all[k].bright, trials[k].explained, {}, {}, all[k].contrast});
+  return found;
 }
 
 /// The best profiles that were tried, without those of about the same size as a better one.
@@ -437,6 +460,14 @@ class SettingsSearch {
         confirmed(region_, given_, try_settings(region_, given_, small_profiles(grey_, given_), threads_));
     if (!small.tried.empty()) return explains_more(choice.refused, small.tried.front()) ? choice : small;
     return not_round(small) != nullptr || choice.refused.empty() ? small : choice;
+  }
+
+  /// The choice with grey plain discs. They are tried after small discs with a common profile, for a few of
+  /// them may be found among these.
+  [[nodiscard]] SettingsChoice with_grey_discs(const SettingsChoice& choice) const {
+    if (!is_open() || others_excluded_) return choice;
+    const std::vector<FoundSettings> grey = find_grey(grey_, given_, lattice_, threads_);
+    return grey.empty() ? choice : with(choice, grey);
   }
 
   /// The choice with variants of its winner: its rims alone, two layers, further sizes.
@@ -670,7 +701,7 @@ SettingsChoice choose_settings(const cv::Mat& picture, const LocatorOptions& giv
   if (given.diameter_px > 0 || model_of(given.refine) != DiscModel::plain)
     return with_saturation(std::move(choice));
   choice = search.or_overlapping_discs(search.with_further_sizes(std::move(choice)));
-  choice = search.or_small_discs(std::move(choice));
+  choice = search.with_grey_discs(search.or_small_discs(std::move(choice)));
   if (choice.tried.empty()) return choice;
   choice = search.with_wider_profiles(search.with_variants_of_winner(choice));
   choice = search.with_larger_discs(search.with_beads_of_pairs(std::move(choice)));
