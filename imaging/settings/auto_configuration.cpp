@@ -151,7 +151,7 @@ namespace {
 struct Contrasts {
   double least, below;
 };
-constexpr Contrasts kPaleContrasts{0, kPale}, kGreyContrasts{kPale, 0.7};
+constexpr Contrasts kPaleContrasts{0, kPale}, kGreyContrasts{kPale, kOpaque};
 
 /// Sizes proposed by the votes of one or both polarities, and the lattice constant; the given size if one is
 /// given.

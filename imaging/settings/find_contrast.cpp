@@ -12,7 +12,7 @@ double find_contrast(const cv::Mat& grey, const LocatorOptions& options) {
   if (refiner.model == DiscModel::shared_profile) return 1;
   const double contrast = contrast_of(prepare(grey, plain, options.diameter_px / 2).darkness);
   if (refiner.model == DiscModel::circle || refiner.layers) return contrast;
-  if (contrast >= kPale) return 1;
+  if (contrast >= kOpaque) return 1;
   const cv::Mat part = busiest(grey, kExaminedSide);
   const auto explained = [&](double by) {
     return settle_plain(part, options, {plain.bright, options.diameter_px, by}).explained;

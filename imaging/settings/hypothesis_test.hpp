@@ -16,6 +16,8 @@ namespace twincell::imaging {
 
 /// Darkness below which discs may be too pale to be recognised.
 inline constexpr double kPale = 0.45;
+/// Darkness from which discs are opaque. Discs below it may be grey only in the mean, with patterns inside.
+inline constexpr double kOpaque = 0.7;
 /// Factor by which pale discs must explain more than others.
 inline constexpr double kPaleClearly = 1.2;
 /// Largest side of the region of a frame that is examined, px.
