@@ -19,6 +19,7 @@ constexpr NamedResult kResults[] = {
     {.name = "T_z", .range = Range::not_negative, .main = true},
     {.name = "T", .range = Range::not_negative},
     {.name = "T_z_eq5", .range = Range::not_negative},
+    {.name = "T_z_lab", .range = Range::not_negative},
     {.name = "T_z_field", .range = Range::not_negative},
     {.name = "T_bar_z", .range = Range::not_negative, .main = true, .over_peak_velocity = 2},
     {.name = "T_bar", .range = Range::not_negative, .over_peak_velocity = 2},
@@ -61,7 +62,8 @@ class GranularTemperature : public Observable {
       : info_(context.info),
         frames_(info_.phases_per_cycle),
         time_(info_.phases_per_cycle),
-        coarse_(info_.phases_per_cycle) {}
+        coarse_(info_.phases_per_cycle),
+        lab_z_(info_.phases_per_cycle) {}
 
   void add(const FrameView& view) override {
     const Frame& frame = view.frame();
@@ -69,6 +71,7 @@ class GranularTemperature : public Observable {
     const Vec3 t = temperature_components(frame, info_.mass);
     if (!t.allFinite()) return;
     const auto of_frames = frames_.add(frame, t);
+    lab_z_.add(frame, lab_temperature(frame));
     if (const TimeMean& mean = frame.time_mean; mean.temperature.allFinite()) {
       const auto of_time = time_.add(frame, mean.temperature);
       const auto of_coarse = coarse_.add(frame, mean.temperature_coarse);
@@ -105,6 +108,7 @@ class GranularTemperature : public Observable {
     all.push_back(scaled("T_z", means.z, 1, "m mean w'^2" + kinetic, kPaper2));
     all.push_back(scaled("T", means.sum, 1 / d_f, fmt::format("mean of the {} components", d_f), kPaper2));
     all.push_back(scaled("T_z_eq5", means.z, 0.5, "(m/2) mean w'^2, eq. 5 as printed", kPaper2));
+    all.push_back(lab_result());
     all.push_back(field_result());
     add_scaled_by_drive(all, d_f);
     all.push_back(correlation_result());
@@ -210,6 +214,33 @@ class GranularTemperature : public Observable {
     return r;
   }
 
+  /// m <w^2> of one frame.
+  [[nodiscard]] double lab_temperature(const Frame& frame) const {
+    double sum = 0;
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < frame.velocity.size(); ++i) {
+      if (!frame.present(i) || !frame.velocity[i].allFinite()) continue;
+      sum += mass_of(info_.mass, i) * frame.velocity[i].z() * frame.velocity[i].z();
+      ++n;
+    }
+    return sum / static_cast<double>(n);
+  }
+
+  [[nodiscard]] Result lab_result() const {
+    const SeriesAverage& average = lab_z_.average();
+    Result r{.name = "T_z_lab",
+             .values = {average.mean()},
+             .unit = "m g sigma",
+             .n = average.n(),
+             .n_of = lab_z_.of_what()};
+    r.interval = average.interval(r.n_of);
+    if (!r.interval) r.no_interval = average.why_no_interval(r.n_of);
+    r.convention = fmt::format("m mean w^2 in the lab frame; mean over {}",
+                               lab_z_.by_cycles() ? "the frames of whole cycles" : "frames");
+    r.source = kPaper2;
+    return r;
+  }
+
   void add_field(const Frame& frame) {
     for (std::size_t i = 0; i < frame.velocity.size(); ++i) {
       if (!frame.present(i) || !frame.velocity[i].allFinite() || !std::isfinite(frame.position[i].z()))
@@ -256,6 +287,7 @@ class GranularTemperature : public Observable {
 
   const TrajectoryInfo& info_;
   Components frames_, time_, coarse_;
+  CycleAverage lab_z_;
   // Relative excess of one mean over another, from the cycles that have both.
   RatioAverage aliasing_, aliasing_z_, sampling_;
   std::map<std::pair<std::int32_t, int>, SlabSums> field_;

@@ -18,6 +18,7 @@ double granular_temperature(const Frame& frame, const std::vector<double>& mass)
 /// - T_x, T_y, T_z: m <u'^2>, m <v'^2>, m <w'^2>, the numbers that Bhateja et al. 2016 print (Table III)
 /// - T: mean of T_x, T_y, T_z over the d_f = 2 or 3 dimensions of the cell
 /// - T_z_eq5: (m/2) <w'^2>, eq. 5 of Bhateja et al. as printed, half of T_z
+/// - T_z_lab: m <w^2>, w the vertical velocity in the lab frame: T_z and the motion of the centre of mass
 /// - T_z_field: m <w'^2> about the mean velocity at the same phase and height (slabs of thickness sigma, lab
 ///   frame) instead of about the centre of mass
 /// - T_bar_z, T_bar: T_z and T in units of m V_p^2, V_p = A omega (dimensionless)
@@ -29,9 +30,9 @@ double granular_temperature(const Frame& frame, const std::vector<double>& mass)
 ///
 /// The means are over time if the frames contain time means (Frame::time_mean). Otherwise they are over the
 /// frames of whole cycles, so that all phases have the same weight, as correlated series over cycles; if the
-/// frames are not locked to the drive, they are over all frames. T_z_field always uses frames. All results
-/// are absent for a trajectory without velocities: a difference between frames is a different quantity (it
-/// averages over the time between them) and does not replace the velocity.
+/// frames are not locked to the drive, they are over all frames. T_z_lab and T_z_field always use frames.
+/// All results are absent for a trajectory without velocities: a difference between frames is a different
+/// quantity (it averages over the time between them) and does not replace the velocity.
 extern const ObservableEntry granular_temperature_observable;
 
 }  // namespace twincell::analysis

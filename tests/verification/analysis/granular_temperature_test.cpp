@@ -106,6 +106,7 @@ TEST(GranularTemperature, ConventionsOfBothPapersSideBySide) {
   expect("T_z", t_z * finite);
   expect("T", (t_x + t_z) / 2 * finite);
   expect("T_z_eq5", t_z / 2 * finite);
+  expect("T_z_lab", t_z + 1);  // the gas drifts with w = -1
   expect("T_z_field", t_z);
   expect("T_bar_z", t_z * finite / (v_p * v_p));
   expect("T_bar", (t_x + t_z) / 2 * finite / (v_p * v_p));
@@ -150,7 +151,8 @@ TEST(GranularTemperature, AbsentWithoutVelocitiesOrDrive) {
   EXPECT_FALSE(find_result(undriven, "T_bar_z").present());
   EXPECT_TRUE(find_result(undriven, "T_z").present());
   still.info().columns.velocity = false;
-  for (const char* name : {"T_g", "T_x", "T_y", "T_z", "T", "T_z_eq5", "T_z_field", "T_bar_z", "T_bar"})
+  for (const char* name :
+       {"T_g", "T_x", "T_y", "T_z", "T", "T_z_eq5", "T_z_lab", "T_z_field", "T_bar_z", "T_bar"})
     EXPECT_FALSE(find_result(analyze(still), name).present()) << name;
 }
 
