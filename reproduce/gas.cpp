@@ -192,8 +192,8 @@ std::size_t Gas::add(const GasCurve& curve) {
                     "time.steps_per_contact = 6.37\ntime.discard = {}\ntime.cycles = {}\n"
                     "until.quantity = \"{}\"\nuntil.relative_error = {}\nuntil.absolute_error = 3e-4\n"
                     "[axes]\n{} = [{}]\n",
-                    request_.seed, kResults, curve.scene, curve.discard, cycles, curve.quantity,
-                    curve.relative_error, curve.key, list),
+                    request_.seed, curve.results.empty() ? kResults : curve.results, curve.scene,
+                    curve.discard, cycles, curve.quantity, curve.relative_error, curve.key, list),
         curve.name);
   };
   std::vector<double> creeping, others;

@@ -91,6 +91,7 @@ struct GasCurve {
   int cycles = 1000;             ///< largest number of cycles; for W below kCreeping kCyclesOfCreeping
   int discard = 100;
   std::string quantity = "T_bar_z";
+  std::string results = "";  ///< results of the analysis as a list of TOML; empty: those of all figures
 };
 
 /// Curves and their runs, stored in a sweep folder that all figures of the paper share, so that a point is

@@ -29,7 +29,8 @@
   EACH(p2_fig16)                     \
   EACH(p2_table1)                    \
   EACH(p2_table2)                    \
-  EACH(p2_table3)
+  EACH(p2_table3)                    \
+  EACH(p2_excess)
 
 namespace twincell::reproduce {
 
