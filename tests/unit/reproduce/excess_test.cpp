@@ -96,7 +96,7 @@ TEST(Excess, DefinitionsAndFirstCyclesAreJudgedFromTheirRuns) {
                       {"contact_fraction", 0},
                       {"T_z", {{"value", t * (seed % 2 == 0 ? 1.19 : 1.21)}}}});
   const Reproduction r = judged(points);
-  const Target& field = target(r, "T_z about the velocity at the phase and height: 2D rough over Table III");
+  const Target& field = target(r, "T_z about the velocity field: 2D rough over Table III");
   EXPECT_NE(field.measured.find("0.8 [0.7976, 0.8024] at W = 89.4"), std::string::npos) << field.measured;
   EXPECT_EQ(field.verdict, Verdict::fail);
   const Target& first = target(r, "first 100 cycles from rest: 2D rough over Table III");
