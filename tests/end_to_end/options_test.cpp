@@ -40,6 +40,7 @@ const std::map<std::string, std::string> kQuantities = {
     {"colour", "number that the colour of a bead shows"},
     {"colour-range", "ends of the colour map"},
     {"columns", "names of the columns of a table"},
+    {"complete", "beads that are in all frames"},
     {"contact-time", "contact time"},
     {"contacts", "contacts of every frame"},
     {"csv", "table of tracks"},
