@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,10 +15,12 @@
 #include <map>
 #include <mutex>
 #include <new>
+#include <optional>
 #include <string>
 
 #include "core/cancellation.hpp"
 #include "core/error.hpp"
+#include "core/file_identity.hpp"
 #include "core/hdf5_trial.hpp"
 
 namespace twincell::h5 {
@@ -35,21 +36,10 @@ Handle opened(const fs::path& file) {
   return Handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
 }
 
-/// Device, inode, size and times of change, ns.
-using Identity = std::array<std::int64_t, 5>;
-
-Identity identity_of(const struct stat& s) {
-  const auto ns = [](const timespec& t) {
-    return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
-  };
-  return {static_cast<std::int64_t>(s.st_dev), static_cast<std::int64_t>(s.st_ino),
-          static_cast<std::int64_t>(s.st_size), ns(s.st_mtim), ns(s.st_ctim)};
-}
-
 /// What became of the children of this process, by the file that they read: see complaint_of.
 struct Tried {
   std::mutex mutex;
-  std::map<Identity, std::string> complaints;
+  std::map<FileIdentity, std::string> complaints;
 };
 Tried& tried() {
   static Tried all;
@@ -158,21 +148,20 @@ std::string complaint_of(int status) {
 
 /// See complaint_of.
 std::string complaint_about(const fs::path& file) {
-  struct stat now {};
-  if (::stat(file.c_str(), &now) != 0) return {};
-  const Identity identity = identity_of(now);
+  const std::optional<FileIdentity> identity = FileIdentity::of(file);
+  if (!identity) return {};
   {
     const std::lock_guard lock(tried().mutex);
-    if (const auto known = tried().complaints.find(identity); known != tried().complaints.end())
+    if (const auto known = tried().complaints.find(*identity); known != tried().complaints.end())
       return known->second;
   }
   const pid_t child = fork_with_hdf5();
-  if (child == 0) be_the_child(file, static_cast<std::uint64_t>(now.st_size));
+  if (child == 0) be_the_child(file, identity->bytes);
   if (child < 0) return {};
   const std::string complaint = complaint_of(status_of(child));
   throw_if_cancelled();
   const std::lock_guard lock(tried().mutex);
-  return tried().complaints[identity] = complaint;
+  return tried().complaints[*identity] = complaint;
 }
 
 }  // namespace

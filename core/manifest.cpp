@@ -4,9 +4,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <cstdint>
 #include <cstring>
-#include <ctime>
 #include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -15,6 +17,7 @@
 
 #include "core/cancellation.hpp"
 #include "core/error.hpp"
+#include "core/file_identity.hpp"
 #include "core/json_text.hpp"
 #include "core/sha256.hpp"
 
@@ -40,47 +43,26 @@ bool regular(const fs::path& path) {
   return fs::symlink_status(path, ec).type() == fs::file_type::regular;
 }
 
-/// Size and times of a file, which change whenever its content changes.
-struct Stamp {
-  off_t size = 0;
-  timespec written{}, changed{};
-
-  bool operator==(const Stamp& o) const {
-    const auto same = [](const timespec& a, const timespec& b) {
-      return a.tv_sec == b.tv_sec && a.tv_nsec == b.tv_nsec;
-    };
-    return size == o.size && same(written, o.written) && same(changed, o.changed);
-  }
-};
-
 /// SHA-256 of a file, cached per process for as long as the file is unchanged: the folders of large stacks
-/// are compared with their manifests before, during and after a run. Programs cannot set the change time
-/// (ctime). File system clocks are coarse, so that a sum is cached only if the file was last changed more
-/// than kTicks before it was read.
+/// are compared with their manifests before, during and after a run. File system clocks are coarse, so that
+/// a sum is cached only if the file was last changed more than kTicks before it was read.
 std::string sum_of(const fs::path& file) {
-  struct Known {
-    Stamp stamp;
-    std::string sum;
-  };
   static std::mutex mutex;
-  static std::map<std::pair<dev_t, ino_t>, Known> known;
-  constexpr time_t kTicks = 2;  // s
+  static std::map<FileIdentity, std::string> known;
+  constexpr std::int64_t kTicks = 2'000'000'000;  // ns
   throw_if_cancelled();
-  struct stat about {};
-  if (::stat(file.c_str(), &about) != 0) return sha256_of(file);
-  const Stamp stamp{about.st_size, about.st_mtim, about.st_ctim};
-  const std::pair key{about.st_dev, about.st_ino};
+  const std::optional<FileIdentity> identity = FileIdentity::of(file);
+  if (!identity) return sha256_of(file);
   {
     const std::lock_guard lock(mutex);
-    if (const auto found = known.find(key); found != known.end() && found->second.stamp == stamp)
-      return found->second.sum;
+    if (const auto found = known.find(*identity); found != known.end()) return found->second;
   }
-  timespec now{};
-  ::clock_gettime(CLOCK_REALTIME, &now);
+  const std::int64_t now =
+      std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
   std::string sum = sha256_of(file);
-  if (stamp.changed.tv_sec + kTicks < now.tv_sec && stamp.written.tv_sec + kTicks < now.tv_sec) {
+  if (std::max(identity->changed_ns, identity->modified_ns) + kTicks < now) {
     const std::lock_guard lock(mutex);
-    known[key] = {stamp, sum};
+    known[*identity] = sum;
   }
   return sum;
 }

@@ -3,7 +3,6 @@
 #include "python/trajectory.hpp"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include "core/error.hpp"
 #include "python/box.hpp"
@@ -13,30 +12,20 @@ namespace twincell::python {
 
 namespace {
 
-/// Device, inode, size and time of change of a file; nothing if it cannot be read.
-std::optional<FileIdentity> identity(const std::filesystem::path& path) {
-  struct ::stat s {};
-  if (::stat(path.c_str(), &s) != 0) return {};
-  return FileIdentity{path, s.st_dev, s.st_ino, static_cast<std::uintmax_t>(s.st_size),
-                      static_cast<std::int64_t>(s.st_mtim.tv_sec) * 1'000'000'000 + s.st_mtim.tv_nsec};
-}
-
-}  // namespace
-
-FileIdentity FileIdentity::of(const std::filesystem::path& file) {
-  const auto found = identity(std::filesystem::absolute(file));
+FileIdentity identity_of(const std::filesystem::path& file) {
+  const auto found = FileIdentity::of(file);
   if (!found) throw InputError({.file = file.string(), .key = {}}, "the file cannot be read.");
   return *found;
 }
 
-bool FileIdentity::holds() const {
-  const auto now = identity(path);
-  return now && now->device == device && now->inode == inode && now->bytes == bytes &&
-         now->changed_ns == changed_ns;
-}
+}  // namespace
 
-std::optional<FileIdentity> Trajectory::file() const {
-  return file_ && file_->holds() ? file_ : std::nullopt;
+Trajectory::Trajectory(const std::filesystem::path& file)
+    : source_(std::make_unique<H5mdReader>(file)),
+      file_({std::filesystem::absolute(file), identity_of(file)}) {}
+
+std::optional<Trajectory::File> Trajectory::file() const {
+  return file_ && FileIdentity::of(file_->path) == file_->identity ? file_ : std::nullopt;
 }
 
 std::shared_ptr<const Frame> Trajectory::frame(std::size_t index) {
@@ -193,11 +182,11 @@ void write(Trajectory& trajectory, const std::filesystem::path& path) {
   writer.finish();
 }
 
-/// State for pickle: of a file its absolute path, its size and the time of its last change; in memory the
+/// State for pickle: of a file its absolute path, its size and its time of modification; in memory the
 /// bytes of its H5MD file.
 py::tuple pickled(Trajectory& trajectory) {
   if (const auto file = trajectory.file())
-    return py::make_tuple(file->path.string(), file->bytes, file->changed_ns);
+    return py::make_tuple(file->path.string(), file->identity.bytes, file->identity.modified_ns);
   const py::object folder = temporary_folder();
   write(trajectory, file_in(folder));
   const py::object bytes =
@@ -209,8 +198,8 @@ std::shared_ptr<Trajectory> unpickled(const py::tuple& state) {
   if (py::isinstance<py::str>(state[0])) {
     const std::filesystem::path path(state[0].cast<std::string>());
     if (state.size() > 2)
-      if (const FileIdentity id = FileIdentity::of(path);
-          id.bytes != state[1].cast<std::uintmax_t>() || id.changed_ns != state[2].cast<std::int64_t>())
+      if (const FileIdentity id = identity_of(path);
+          id.bytes != state[1].cast<std::uint64_t>() || id.modified_ns != state[2].cast<std::int64_t>())
         throw InputError({.file = path.string(), .key = {}},
                          "the file was replaced or changed since the trajectory was pickled.");
     return std::make_shared<Trajectory>(path);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/file_identity.hpp"
 #include "python/module.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 #include "trajectory/trajectory.hpp"
@@ -37,33 +38,27 @@ class SharedFrames : public TrajectorySource, public TrajectorySink {
 /// \throws ConfigError naming the output
 void require_no_input(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs);
 
-/// A file as it was at some time.
-struct FileIdentity {
-  std::filesystem::path path;  ///< absolute
-  std::uintmax_t device = 0, inode = 0, bytes = 0;
-  std::int64_t changed_ns = 0;  ///< time of the last change
-
-  /// \throws InputError if there is no such file
-  static FileIdentity of(const std::filesystem::path& file);
-  /// Whether the file at `path` is the same file with the same content.
-  [[nodiscard]] bool holds() const;
-};
-
 /// A trajectory, and of a file the frame that was read last. An array of a column keeps its frame alive.
 class Trajectory {
  public:
+  /// A file as it was when it was opened.
+  struct File {
+    std::filesystem::path path;  ///< absolute
+    FileIdentity identity;
+  };
+
   explicit Trajectory(SharedFrames frames)
       : source_(std::make_unique<SharedFrames>(std::move(frames))),
         memory_(static_cast<const SharedFrames*>(source_.get())) {}
-  explicit Trajectory(const std::filesystem::path& file)
-      : source_(std::make_unique<H5mdReader>(file)), file_(FileIdentity::of(file)) {}
+  /// \throws InputError if there is no such file, or as H5mdReader
+  explicit Trajectory(const std::filesystem::path& file);
 
   [[nodiscard]] const TrajectorySource& source() const { return *source_; }
   [[nodiscard]] const TrajectoryInfo& info() const { return source_->info(); }
   [[nodiscard]] std::size_t n_frames() const { return source_->n_frames(); }
   /// The file, as long as it is the one that was opened; nothing in memory, and after the
   /// file was replaced, changed or removed.
-  [[nodiscard]] std::optional<FileIdentity> file() const;
+  [[nodiscard]] std::optional<File> file() const;
   /// Frame `index`.
   /// \pre index < n_frames()
   std::shared_ptr<const Frame> frame(std::size_t index);
@@ -71,7 +66,7 @@ class Trajectory {
  private:
   std::unique_ptr<TrajectorySource> source_;
   const SharedFrames* memory_ = nullptr;  ///< source_, if it is in memory
-  std::optional<FileIdentity> file_;
+  std::optional<File> file_;
   std::shared_ptr<const Frame> last_;
   std::size_t last_index_ = 0;
 };
