@@ -6,7 +6,7 @@
 #include "core/error.hpp"
 #include "core/in_parallel.hpp"
 #include "core/median.hpp"
-#include "imaging/settings/auto_configuration.hpp"
+#include "imaging/settings/size_hypotheses.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/stack/repeated_frames.hpp"
 

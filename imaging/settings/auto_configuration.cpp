@@ -6,262 +6,29 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "core/cancellation.hpp"
 #include "core/in_parallel.hpp"
 #include "core/median.hpp"
 #include "imaging/find/lattice_constant.hpp"
-#include "imaging/find/vote_finder.hpp"
 #include "imaging/locate/picture_orientation.hpp"
 #include "imaging/refine/edge_fit.hpp"
 #include "imaging/refine/overlapping_fit.hpp"
 #include "imaging/refine/picture_evidence.hpp"
 #include "imaging/refine/picture_fit.hpp"
 #include "imaging/refine/profile_fit.hpp"
-#include "imaging/settings/find_contrast.hpp"
+#include "imaging/settings/grey_discs.hpp"
 #include "imaging/settings/hypothesis_test.hpp"
 #include "imaging/settings/larger_discs.hpp"
 #include "imaging/settings/nearest_distances.hpp"
 #include "imaging/settings/paired_spots.hpp"
+#include "imaging/settings/patterned_discs.hpp"
 #include "imaging/settings/polydisperse_settings.hpp"
 #include "imaging/settings/profile_model_selection.hpp"
 #include "imaging/settings/settings_choice.hpp"
+#include "imaging/settings/size_hypotheses.hpp"
 
 namespace twincell::imaging {
 
 namespace {
-
-/// Radii (px) at which the sharpness of the votes has a maximum, sharpest first.
-std::vector<double> sharp_radii(const cv::Mat1f& darkness, double smallest, double largest) {
-  constexpr double kRatio = 1.03;
-  constexpr std::size_t kMaxRadii = 3;
-  constexpr double kMinSharpness = 0.1;  // smallest sharpness, as a fraction of the largest
-  std::vector<double> sharpness;
-  const int steps = static_cast<int>(std::log(largest / smallest) / std::log(kRatio));
-  for (int k = 0; k <= steps; ++k) {
-    throw_if_cancelled();
-    sharpness.push_back(vote_sharpness(darkness, smallest * std::pow(kRatio, k)));
-  }
-  std::vector<std::pair<double, double>> tops;
-  // A rise that continues to the last radius is no maximum.
-  for (std::size_t k = 0; k + 1 < sharpness.size(); ++k) {
-    const double before = k > 0 ? sharpness[k - 1] : 0, here = sharpness[k], after = sharpness[k + 1];
-    if (here <= 0 || here < before || here <= after) continue;
-    // A maximum at the smallest radius may be texture. It counts only if no other radius is sharper.
-    if (k == 0 && here < *std::max_element(sharpness.begin(), sharpness.end())) continue;
-    // The vertex of the parabola through this point and its neighbours.
-    double at = static_cast<double>(k);
-    const double curvature = before - 2 * here + after;
-    if (k > 0 && curvature < 0) at += 0.5 * (before - after) / curvature;
-    tops.emplace_back(here, smallest * std::pow(kRatio, at));
-  }
-  std::sort(tops.rbegin(), tops.rend());
-  std::vector<double> radii;
-  for (const auto& [sharp, radius] : tops)
-    if (radii.size() < kMaxRadii && sharp > kMinSharpness * tops[0].first) radii.push_back(radius);
-  return radii;
-}
-
-}  // namespace
-
-double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options) {
-  const double largest = std::min(kLargestRadius, 0.5 * std::min(grey.cols, grey.rows));
-  if (largest < kSmallestRadius) return 0;
-  const std::vector<double> radii =
-      sharp_radii(prepare(grey, options, largest).darkness, kSmallestRadius, largest);
-  return radii.empty() ? 0 : 2 * radii[0];
-}
-
-std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOptions& given) {
-  constexpr double kMinDiameter_px = 80, kMaxDiameter_px = 400, kRatio = 1.04;  // px
-  constexpr double kShrink = 4;
-  constexpr double kApart = 1.15,
-                   kComparable = 0.7;  // second size: least ratio to the first; relative sharpness
-  constexpr double kCovered = 0.2;     // fraction of the frame that the discs must cover
-  constexpr double kNoise = 0.035;     // largest noise, relative to a disc's contrast, that creates no edges
-  constexpr double kMinVisibleShare = 0.7;  // mean fraction of the rims that must be visible
-  constexpr std::ptrdiff_t kMinDiscs = 3;
-  const double largest = std::min(kMaxDiameter_px, 0.5 * std::min(grey.cols, grey.rows));
-  std::optional<FoundSettings> best;
-  for (const bool bright : {false, true}) {
-    if (largest < kMinDiameter_px || (given.polarity_known && bright != given.preprocess.bright)) continue;
-    LocatorOptions options = given;
-    // Sizes: the sharpest votes on the reduced picture.
-    options.refine.method = kEdgeRefiner.word;
-    options.preprocess.bright = bright;
-    options.diameter_px = kMinDiameter_px;
-    options.preprocess.contrast = find_contrast(grey, options);
-    const Prepared image = prepare(grey, options.preprocess, largest / 2);
-    const Noise noise = noise_of(image.darkness);
-    if (noise.dark + noise.light > kNoise * kNoise) continue;
-    cv::Mat1f small;
-    cv::resize(image.darkness, small, {}, 1 / kShrink, 1 / kShrink, cv::INTER_AREA);
-    std::vector<std::pair<double, double>> tops;  // sharpness, diameter
-    double before = 0, last = 0;
-    for (double d = kMinDiameter_px; d <= largest; d *= kRatio) {
-      throw_if_cancelled();
-      const double now = vote_sharpness(small, 0.5 * d / kShrink);
-      if (last > before && last >= now) tops.emplace_back(last, d / kRatio);
-      before = std::exchange(last, now);
-    }
-    if (tops.empty()) continue;
-    std::sort(tops.rbegin(), tops.rend());
-    options.diameter_px = tops[0].second;
-    for (const auto& [sharp, d] : tops)
-      if (options.other_diameters_px.empty() && sharp > kComparable * tops[0].first &&
-          std::max(d / tops[0].second, tops[0].second / d) > kApart)
-        options.other_diameters_px = {d};
-    std::vector<Detection> beads = locate(grey, options).beads;
-    // Refinement: each size becomes the median of its discs; a size with fewer than kMinDiscs discs is
-    // dropped.
-    const auto settle = [&](double d) {
-      std::vector<double> radii;
-      for (const Detection& b : beads)
-        if (std::abs(2 * b.radius / d - 1) < kApart - 1) radii.push_back(b.radius);
-      return std::ssize(radii) < kMinDiscs ? 0.0 : 2 * upper_median(std::move(radii));
-    };
-    const double first = settle(options.diameter_px);
-    if (first == 0) continue;
-    options.diameter_px = first;
-    if (!options.other_diameters_px.empty()) {
-      const double second = settle(options.other_diameters_px[0]);
-      options.other_diameters_px.clear();
-      if (second > 0) options.other_diameters_px.push_back(second);
-    }
-    // Acceptance: the discs must cover enough of the frame and show enough of their rims.
-    beads = locate(grey, options).beads;
-    double covered = 0, explained = 0, rims = 0;
-    for (const Detection& b : beads) {
-      rims += b.score;
-      covered += std::numbers::pi * b.radius * b.radius;
-      explained -= b.radius * b.radius * std::log(std::max(1 - b.score, 1e-6));
-    }
-    if (covered < kCovered * grey.cols * grey.rows || std::ssize(beads) < kMinDiscs ||
-        rims < kMinVisibleShare * static_cast<double>(beads.size()))
-      continue;
-    if (!best || explained > best->explained)
-      best = FoundSettings{options.diameter_px, bright, explained, options.other_diameters_px,
-                           std::string(kEdgeRefiner.word)};
-  }
-  return best;
-}
-
-namespace {
-
-/// A range of the contrast of discs.
-struct Contrasts {
-  double least, below;
-};
-constexpr Contrasts kPaleContrasts{0, kPale}, kGreyContrasts{kPale, kOpaque};
-
-/// Sizes proposed by the votes of one or both polarities, and the lattice constant; the given size if one is
-/// given.
-/// \param of if given, instead those of discs of the contrast of the picture, if this is in the range: the
-///     gradients of pale discs are too weak to vote
-std::vector<Hypothesis> hypotheses(const cv::Mat& grey, const LocatorOptions& given, double lattice,
-                                   const std::optional<Contrasts>& of = {}) {
-  constexpr double kNoisy = 0.04, kSmooth = 1;  // darkness; px
-  std::vector<Hypothesis> all;
-  const double largest = std::min(kLargestRadius, 0.5 * std::min(grey.cols, grey.rows));
-  for (const bool bright : {false, true}) {
-    if (given.polarity_known && bright != given.preprocess.bright) continue;
-    if (largest < kSmallestRadius && given.diameter_px <= 0) continue;
-    PreprocessOptions options = given.preprocess;
-    options.bright = bright;
-    cv::Mat1f darkness =
-        prepare(grey, options, given.diameter_px > 0 ? given.diameter_px / 2 : largest).darkness;
-    const double contrast = of ? contrast_of(darkness) : 1;
-    if (of && (contrast < of->least || contrast >= of->below)) continue;
-    if (given.diameter_px > 0) {
-      all.push_back({bright, given.diameter_px, contrast});
-      continue;
-    }
-    darkness /= contrast;
-    // Without smoothing the gradients of the noise would vote, with the sharpest peak at the smallest radius.
-    const Noise noise = noise_of(darkness);
-    if (noise.dark + noise.light > kNoisy * kNoisy)
-      cv::GaussianBlur(darkness.clone(), darkness, {0, 0}, kSmooth);
-    for (const double radius : sharp_radii(darkness, kSmallestRadius, largest))
-      all.push_back({bright, 2 * radius, contrast});
-    if (lattice > 0) all.push_back({bright, lattice, contrast});
-  }
-  return all;
-}
-
-/// Pale discs of the sizes of hypotheses, each with the median darkness of those that are located. Walls that
-/// are darker than the discs hide the contrast of the discs from contrast_of().
-std::vector<Hypothesis> pale_among(const cv::Mat& grey, const LocatorOptions& given,
-                                   const std::vector<Hypothesis>& sizes) {
-  constexpr std::size_t kMinDiscs = 10;
-  std::vector<Hypothesis> pale;
-  for (Hypothesis h : sizes) {
-    LocatorOptions options = given;
-    options.diameter_px = h.diameter_px;
-    options.preprocess.bright = h.bright;
-    options.refine.pale = true;
-    std::vector<double> darkness;
-    for (const Detection& d : locate(grey, options).beads) darkness.push_back(d.darkness);
-    if (darkness.size() < kMinDiscs) continue;
-    h.contrast = upper_median(std::move(darkness));
-    if (h.contrast < kPale) pale.push_back(h);
-  }
-  return pale;
-}
-
-/// Pale plain discs.
-struct PaleDiscs {
-  std::optional<FoundSettings> best;  ///< nothing: there are none
-  bool preferred = false;             ///< they explain clearly more than the best settings so far
-};
-
-/// Pale plain discs, and whether they are preferred to the best settings so far. With grey discs a dark rim
-/// does little harm, so to be preferred to a common profile, they need one with the shape of a plain disc's
-/// profile; neighbours that touch change that shape, so that otherwise the evidence decides.
-PaleDiscs find_pale(const cv::Mat& grey, const LocatorOptions& given, double lattice,
-                    std::vector<Hypothesis> sizes, const std::optional<FoundSettings>& best) {
-  if (model_of(given.refine) != DiscModel::plain) return {};
-  std::vector<Hypothesis> all = hypotheses(grey, given, lattice, kPaleContrasts);
-  if (all.empty() && best) {
-    constexpr double kSameSize = 0.2;  // pale discs are at best found with another model, of about their size
-    std::erase_if(sizes, [&](const Hypothesis& h) {
-      return h.bright != best->bright || std::abs(h.diameter_px / best->diameter_px - 1) > kSameSize;
-    });
-    if (sizes.empty()) sizes.push_back({best->bright, best->diameter_px});
-    all = pale_among(grey, given, sizes);
-  }
-  if (all.empty()) return {};
-  double to_beat = best ? kPaleClearly * best->explained : 0;
-  bool comparable = true;
-  if (best && best->method == kProfileRefiner.word) {
-    const ProfileTrial trial = try_profile(grey, given, {best->bright, best->diameter_px});
-    comparable = trial.explained <= 0 || trial.has_plain_shape();
-    to_beat = trial.explained;
-  }
-  PaleDiscs pale;
-  double most = comparable ? to_beat : 0;
-  for (const Hypothesis& h : all) {
-    const Trial trial = settle_plain(grey, given, h);
-    if (trial.explained <= most) continue;
-    most = trial.explained;
-    pale = {FoundSettings{trial.diameter_px, h.bright, trial.explained, {}, {}, h.contrast}, comparable};
-  }
-  return pale;
-}
-
-/// Plain discs as dark as the picture shows, if that is grey. Discs with patterns inside, such as small
-/// photoelastic ones, are grey in the mean and have no common profile, but their rims do not differ; as
-/// opaque discs those with a bright middle would be dropped.
-std::vector<FoundSettings> find_grey(const cv::Mat& grey, const LocatorOptions& given, double lattice,
-                                     int threads) {
-  if (model_of(given.refine) != DiscModel::plain) return {};
-  const std::vector<Hypothesis> all = hypotheses(grey, given, lattice, kGreyContrasts);
-  std::vector<Trial> trials(all.size());
-  in_parallel(all.size(), threads, [&](std::size_t k) { trials[k] = settle_plain(grey, given, all[k]); });
-  std::vector<FoundSettings> found;
-  for (std::size_t k = 0; k < all.size(); ++k)
-    if (trials[k].explained > 0)
-      found.push_back({trials[k].diameter_px, all[k].bright, trials[k].explained, {}, {}, all[k].contrast});
-  return found;
-}
 
 /// The best profiles that were tried, without those of about the same size as a better one.
 std::vector<FoundSettings> best_profiles(std::vector<FoundSettings> tried) {
@@ -349,7 +116,7 @@ class SettingsSearch {
         threads_(threads),
         grey_(busiest(frame, kExaminedSide)),
         lattice_(lattice_constant(grey_)),
-        hypotheses_(hypotheses(grey_, given, lattice_)) {}
+        hypotheses_(size_hypotheses(grey_, given, lattice_)) {}
 
   /// The choice of plain discs that explain nearly all of the picture, so that the other models, which take
   /// most of the time, cannot explain clearly more. Of each polarity, the size with the sharpest votes is
@@ -394,7 +161,7 @@ class SettingsSearch {
     if (given_.diameter_px > 0 || (best_ && best_->explained > 0)) return;
     cv::Mat small;  // in which discs of up to 320 px are found
     cv::resize(grey_, small, {}, 1 / kShrink, 1 / kShrink, cv::INTER_AREA);
-    std::vector<Hypothesis> larger = hypotheses(small, given_, 0);
+    std::vector<Hypothesis> larger = size_hypotheses(small, given_, 0);
     for (Hypothesis& h : larger) h.diameter_px *= kShrink;
     try_all(larger);
   }

@@ -12,23 +12,11 @@
 
 #include <opencv2/core.hpp>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "imaging/locate/locator.hpp"
-#include "imaging/preprocess/preprocess.hpp"
 #include "imaging/settings/found_settings.hpp"
 
 namespace twincell::imaging {
-
-/// Bead diameter (px) at which the gradient votes of a frame are sharpest, searched from 6 to 80 px. Accurate
-/// to a few per cent for beads of one size. Returns 0 if no round object stands out.
-double estimate_diameter(const cv::Mat& grey, const PreprocessOptions& options);
-
-/// Finds large discs (80 px and more, up to two sizes) by their rims alone, such as photoelastic ones. On
-/// average 0.7 of each rim must be visible, and the discs must cover a fifth of the frame. The contrast is
-/// found too. Empty if no such discs are found.
-std::optional<FoundSettings> find_patterned(const cv::Mat& grey, const LocatorOptions& given);
 
 /// Tries settings for what `given` leaves open (see above), and chooses by the evidence of the picture
 /// (settings_choice.hpp). Empty if no round object stands out.

@@ -12,6 +12,7 @@
 #include "imaging/benchmark/score.hpp"
 #include "imaging/camera/synthetic_camera.hpp"
 #include "imaging/settings/auto_configuration.hpp"
+#include "imaging/settings/size_hypotheses.hpp"
 
 using namespace twincell;
 using namespace twincell::imaging;
