@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "analysis/motion/centre_of_mass.hpp"
 #include "analysis/motion/tracers.hpp"
@@ -11,6 +10,7 @@
 #include "analysis/observable/observable.hpp"
 #include "analysis/observable/timed_analysis.hpp"
 #include "core/cancellation.hpp"
+#include "core/constants.hpp"
 #include "core/plural.hpp"
 #include "trajectory/plate.hpp"
 
@@ -95,8 +95,7 @@ void check(const AnalysisOptions& options) {
 /// frame if no frame has phase 0 or the frames have no phase).
 AnalysisContext make_context(const TrajectorySource& trajectory, const AnalysisOptions& options) {
   const TrajectoryInfo& info = trajectory.info();
-  AnalysisContext context{info, options, neighbour_cutoff(info, options),         {},
-                          {},   {},      std::numeric_limits<double>::quiet_NaN()};
+  AnalysisContext context{info, options, neighbour_cutoff(info, options), {}, {}, {}, kNaN};
   Frame frame;
   std::size_t index = 0;
   trajectory.read(index, frame);
@@ -111,14 +110,12 @@ AnalysisContext make_context(const TrajectorySource& trajectory, const AnalysisO
   context.tracers = choice.slots;
   context.tracer_choice = choice.how;
   if (choice.slots.empty()) context.no_tracers = choice.how;
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  const double plate =
-      why_not_at_rest(info, frame).empty() ? plate_height(info, frame).value_or(kUnknown) : kUnknown;
+  const double plate = why_not_at_rest(info, frame).empty() ? plate_height(info, frame).value_or(kNaN) : kNaN;
   double sum = 0;
   std::size_t n = 0;
   for (const std::size_t slot : choice.slots) {
     const bool seen = frame.present(slot) && std::isfinite(frame.position[slot].z());
-    context.tracer_rest_heights.push_back(seen ? frame.position[slot].z() - plate : kUnknown);
+    context.tracer_rest_heights.push_back(seen ? frame.position[slot].z() - plate : kNaN);
     if (!seen) continue;
     sum += frame.position[slot].z();
     ++n;

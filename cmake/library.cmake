@@ -29,12 +29,14 @@ function(twincell_orchestrates target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Og>)
 endfunction()
 
-# twincell_in_batches(TARGET): compiles the target's files eight at a time. They spend most of their time on the templates
-# of the same libraries, which are then read once in eight; but one changed file costs its whole batch. A name in an unnamed
-# namespace must differ from those of the other files. Debug builds compile each file by itself.
+# twincell_in_batches(TARGET [alone...]): compiles the target's files eight at a time, but for those named. They spend most of
+# their time on the templates of the same libraries, which are then read once in eight; but one changed file costs its whole
+# batch. A name in an unnamed namespace must differ from those of the other files. Files that include themselves once per
+# vector instruction set (Highway) must be named. Debug builds compile each file by itself.
 function(twincell_in_batches target)
   if(NOT CMAKE_BUILD_TYPE STREQUAL Debug)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   endif()
 endfunction()
 

@@ -8,6 +8,7 @@
 namespace twincell {
 
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();  ///< not measured, not known
-inline constexpr double kTurn = 2 * std::numbers::pi;                     ///< rad
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+inline constexpr double kTurn = 2 * std::numbers::pi;  ///< rad
 
 }  // namespace twincell

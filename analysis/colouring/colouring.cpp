@@ -7,18 +7,17 @@
 
 #include "analysis/neighbours/bond_orientational_order.hpp"
 #include "analysis/observable/observable.hpp"
+#include "core/constants.hpp"
 #include "core/error.hpp"
 
 namespace twincell::analysis {
 
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
 /// `number(i)` of every bead that is present.
 template <class Number>
 std::vector<double> each(const ColouredFrame& at, Number number) {
-  std::vector<double> values(at.frame.position.size(), kUnknown);
+  std::vector<double> values(at.frame.position.size(), kNaN);
   for (std::size_t i = 0; i < values.size(); ++i)
     if (at.frame.present(i)) values[i] = number(i);
   return values;
@@ -106,7 +105,7 @@ std::vector<double> cycle_displacement(const ColouredFrame& at) {
   const bool usable =
       at.index >= cycle && before.phase == at.frame.phase && before.cycle + 1 == at.frame.cycle;
   return each(at, [&](std::size_t i) {
-    return usable && before.present(i) ? (at.frame.position[i] - before.position[i]).norm() : kUnknown;
+    return usable && before.present(i) ? (at.frame.position[i] - before.position[i]).norm() : kNaN;
   });
 }
 

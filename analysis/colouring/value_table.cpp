@@ -4,18 +4,16 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
-#include <limits>
 #include <set>
 #include <utility>
 
+#include "core/constants.hpp"
 #include "core/error.hpp"
 #include "core/table.hpp"
 
 namespace twincell::analysis {
 
 namespace {
-
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// The name of the column of numbers.
 std::string column_of_numbers(const Table& table) {
@@ -57,13 +55,13 @@ ValueTable::ValueTable(const std::filesystem::path& file, std::size_t n_frames, 
       throw InputError(
           {.file = table.file, .key = "particle"},
           fmt::format("row {}: particle {} has a second number in frame {}", row + 1, bead, frame));
-    values_.try_emplace(frame, n_beads, kUnknown).first->second[bead] = numbers[row];
+    values_.try_emplace(frame, n_beads, kNaN).first->second[bead] = numbers[row];
   }
 }
 
 std::vector<double> ValueTable::of(std::size_t frame) const {
   const auto found = values_.find(frame);
-  return found == values_.end() ? std::vector<double>(n_beads_, kUnknown) : found->second;
+  return found == values_.end() ? std::vector<double>(n_beads_, kNaN) : found->second;
 }
 
 }  // namespace twincell::analysis

@@ -4,12 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <limits>
+
+#include "core/constants.hpp"
 
 namespace twincell::analysis {
 
 OnsetAgreement agreement_of(const PhaseBoundary& a, const PhaseBoundary& b) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if ((!a.below && !a.above) || (!b.below && !b.above)) return OnsetAgreement::unknown;
   // At a strength that is above the one onset and below the other they differ, so that touching intervals are
   // apart.

@@ -5,11 +5,12 @@
 #include <numeric>
 #include <queue>
 
+#include "core/constants.hpp"
+
 namespace twincell::imaging {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
 
 /// Solver by shortest augmenting paths. Columns 0 .. m-1 are real; column m + i is row i's private column

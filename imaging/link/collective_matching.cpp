@@ -15,9 +15,6 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr std::int64_t kAlone = Assignment::kAlone;
-constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-
 /// The steps of the matching, and the search for detections of unassigned beads in a closed cell.
 class Matching {
  public:
@@ -54,14 +51,14 @@ double Matching::cost_at(std::size_t t, std::int64_t k, std::size_t next, std::s
 bool Matching::find_detection_for(std::size_t unassigned) {
   struct Label {
     double cost = std::numeric_limits<double>::infinity();
-    std::size_t from = kNone;  // the bead that takes the detection
+    std::size_t from = kNoBead;  // the bead that takes the detection
   };
   std::vector<Label> label(problem_.n());
   label[unassigned].cost = 0;
   Label last;  // the last bead of the best chain; `place` is its detection
-  std::int64_t place = kAlone;
+  std::int64_t place = Assignment::kAlone;
   auto in_chain_of = [&](std::size_t t, std::size_t o) {
-    while (t != kNone && t != o) t = label[t].from;
+    while (t != kNoBead && t != o) t = label[t].from;
     return t == o;
   };
   std::vector<std::size_t> changed{unassigned}, next;
@@ -73,15 +70,15 @@ bool Matching::find_detection_for(std::size_t unassigned) {
     next.clear();
     for (const std::size_t t : changed) {
       const std::size_t from = label[t].from;
-      const double now = cost_at(t, present_.detection_of[t], kNone, kNone);
+      const double now = cost_at(t, present_.detection_of[t], kNoBead, kNoBead);
       for (std::size_t e = problem_.first[t]; e < problem_.first[t + 1]; ++e) {
         const std::int64_t k = problem_.choices[e].column,
                            rival = present_.owner_of[static_cast<std::size_t>(k)];
-        const std::size_t o = rival < 0 ? kNone : static_cast<std::size_t>(rival);
-        if (o != kNone && in_chain_of(t, o)) continue;
+        const std::size_t o = rival < 0 ? kNoBead : static_cast<std::size_t>(rival);
+        if (o != kNoBead && in_chain_of(t, o)) continue;
         ++search_moves_;
         const double cost = label[t].cost + cost_at(t, k, o, from) - now;
-        if (o == kNone) {
+        if (o == kNoBead) {
           if (cost < last.cost) {
             last = {cost, t};
             place = k;
@@ -96,11 +93,11 @@ bool Matching::find_detection_for(std::size_t unassigned) {
     changed.swap(next);
   }
   // Acceptance: apply the cheapest chain and keep it only if the exact sum falls.
-  if (last.from == kNone) return false;
+  if (last.from == kNoBead) return false;
   const double before = present_.total(problem_);
   const MatchSolution old = present_.detection_of;
   MatchSolution solution = present_.detection_of;
-  for (std::size_t t = last.from; t != kNone; t = label[t].from) solution[t] = std::exchange(place, old[t]);
+  for (std::size_t t = last.from; t != kNoBead; t = label[t].from) solution[t] = std::exchange(place, old[t]);
   present_.adopt(solution);
   if (present_.total(problem_) < before - kMatchCosts.least_decrease) return true;
   present_.adopt(old);
@@ -116,7 +113,7 @@ CollectiveMatching Matching::solve(const MatchKnowledge& known) {
   if (!known.initial.empty()) {
     MatchSolution initial(known.initial.begin(), known.initial.end());
     for (std::size_t t = 0; t < problem_.n(); ++t)
-      if (std::isinf(problem_.own_cost(t, initial[t]))) initial[t] = kAlone;
+      if (std::isinf(problem_.own_cost(t, initial[t]))) initial[t] = Assignment::kAlone;
     present_.adopt(std::move(initial));
   }
   // Improvement: fusions with the other solutions, then exchanges.
@@ -132,7 +129,7 @@ CollectiveMatching Matching::solve(const MatchKnowledge& known) {
   // Closed cell: detections for unassigned beads. If many beads are unassigned, the matching itself is
   // unreliable and the search would be slow.
   const auto unassigned = static_cast<std::size_t>(
-      std::count(present_.detection_of.begin(), present_.detection_of.end(), kAlone));
+      std::count(present_.detection_of.begin(), present_.detection_of.end(), Assignment::kAlone));
   if (known.all_present && unassigned <= 1 + problem_.n() / kMatchCosts.beads_per_unassigned) {
     std::fill(problem_.unused_cost.begin(), problem_.unused_cost.end(), kMatchCosts.closed_cell_unused_cost);
     bool any = false;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -12,8 +11,6 @@
 namespace twincell::imaging {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The nearest of several partners, and the squared distances of the two nearest.
 struct Nearest {

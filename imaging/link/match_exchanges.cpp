@@ -5,15 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "core/constants.hpp"
+
 namespace twincell::imaging {
-
-namespace {
-
-constexpr std::int64_t kAlone = Assignment::kAlone;
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-
-}  // namespace
 
 double MatchExchanges::neighbourhood_cost(std::size_t t, std::size_t excluded) const {
   double sum = 0;
@@ -27,15 +21,15 @@ double MatchExchanges::neighbourhood_cost(std::size_t t, std::size_t excluded) c
 }
 
 double MatchExchanges::cached_pair_cost(std::size_t t) {
-  if (std::isnan(pair_cost_cache_[t])) pair_cost_cache_[t] = neighbourhood_cost(t, kNone);
+  if (std::isnan(pair_cost_cache_[t])) pair_cost_cache_[t] = neighbourhood_cost(t, kNoBead);
   return pair_cost_cache_[t];
 }
 
 double MatchExchanges::rise_of(std::size_t t, std::int64_t k) {
   const std::int64_t was = present_.detection_of[t], rival = present_.owner_of[static_cast<std::size_t>(k)];
-  const std::size_t o = rival < 0 ? kNone : static_cast<std::size_t>(rival);
+  const std::size_t o = rival < 0 ? kNoBead : static_cast<std::size_t>(rival);
   double rise = problem_.own_cost(t, k) - problem_.own_cost(t, was), most_gain = cached_pair_cost(t);
-  if (o == kNone) {
+  if (o == kNoBead) {
     rise += (was >= 0 ? problem_.unused_cost[static_cast<std::size_t>(was)] : 0) -
             problem_.unused_cost[static_cast<std::size_t>(k)];
   } else {
@@ -47,15 +41,15 @@ double MatchExchanges::rise_of(std::size_t t, std::int64_t k) {
     present_.detection_of[bead] = to;
     if (to >= 0) present_.owner_of[static_cast<std::size_t>(to)] = static_cast<std::int64_t>(bead);
   };
-  auto pairs = [&] { return neighbourhood_cost(t, kNone) + (o == kNone ? 0 : neighbourhood_cost(o, t)); };
+  auto pairs = [&] { return neighbourhood_cost(t, kNoBead) + (o == kNoBead ? 0 : neighbourhood_cost(o, t)); };
   rise -= pairs();
-  if (o == kNone && was >= 0) present_.owner_of[static_cast<std::size_t>(was)] = kAlone;
+  if (o == kNoBead && was >= 0) present_.owner_of[static_cast<std::size_t>(was)] = Assignment::kAlone;
   put(t, k);
-  if (o != kNone) put(o, was);
+  if (o != kNoBead) put(o, was);
   rise += pairs();
-  if (o == kNone) present_.owner_of[static_cast<std::size_t>(k)] = kAlone;
+  if (o == kNoBead) present_.owner_of[static_cast<std::size_t>(k)] = Assignment::kAlone;
   put(t, was);
-  if (o != kNone) put(o, k);
+  if (o != kNoBead) put(o, k);
   return rise;
 }
 
@@ -87,14 +81,14 @@ bool MatchExchanges::close_chain(std::int64_t k, double own) {
     for (std::size_t i = 0; i < chain_.size(); ++i) present_.detection_of[chain_[i]] = old[i];
     return false;
   }
-  if (old[0] >= 0) present_.owner_of[static_cast<std::size_t>(old[0])] = kAlone;
+  if (old[0] >= 0) present_.owner_of[static_cast<std::size_t>(old[0])] = Assignment::kAlone;
   for (const std::size_t t : chain_) {
     if (present_.detection_of[t] >= 0)
       present_.owner_of[static_cast<std::size_t>(present_.detection_of[t])] = static_cast<std::int64_t>(t);
-    pair_cost_cache_[t] = kUnknown;
+    pair_cost_cache_[t] = kNaN;
     for (const std::size_t q : problem_.pairs_of[t])
-      pair_cost_cache_[MatchProblem::other_of(problem_.pairs[q], t)] = kUnknown;
-    for (const std::size_t o : problem_.far_of[t]) pair_cost_cache_[o] = kUnknown;
+      pair_cost_cache_[MatchProblem::other_of(problem_.pairs[q], t)] = kNaN;
+    for (const std::size_t o : problem_.far_of[t]) pair_cost_cache_[o] = kNaN;
   }
   return true;
 }
@@ -128,7 +122,7 @@ bool MatchExchanges::extend_chain(double own) {
       continue;
     }
     const auto o = static_cast<std::size_t>(rival);
-    if (chain_position_[o] != kNone || chain_.size() == kMatchCosts.max_exchange ||
+    if (chain_position_[o] != kNoBead || chain_.size() == kMatchCosts.max_exchange ||
         chains_ == kMatchCosts.max_chains)
       continue;
     const double best = rise - (problem_.own_cost(o, k) - cheapest_own_[o]) - most_filled;
@@ -138,15 +132,15 @@ bool MatchExchanges::extend_chain(double own) {
     ++chains_;
     const bool changed = extend_chain(rise);
     chain_.pop_back();
-    chain_position_[o] = kNone;
+    chain_position_[o] = kNoBead;
     if (changed) return true;
   }
   return false;
 }
 
 void MatchExchanges::improve() {
-  pair_cost_cache_.assign(problem_.n(), kUnknown);
-  chain_position_.assign(problem_.n(), kNone);
+  pair_cost_cache_.assign(problem_.n(), kNaN);
+  chain_position_.assign(problem_.n(), kNoBead);
   cheapest_own_.assign(problem_.n(), 0);
   for (const Edge& e : problem_.choices) cheapest_own_[e.row] = std::min(cheapest_own_[e.row], e.cost);
   auto change_from = [&](std::size_t t) {
@@ -154,7 +148,7 @@ void MatchExchanges::improve() {
     chains_ = 0;
     chain_position_[t] = 0;
     const bool changed = extend_chain(0);
-    chain_position_[t] = kNone;
+    chain_position_[t] = kNoBead;
     return changed;
   };
   // Each exchange is a gain; the limit stops a long series of tiny gains.

@@ -70,6 +70,9 @@ struct MatchCosts {
 };
 inline constexpr MatchCosts kMatchCosts;
 
+/// Stands for no bead where a bead is named by its number.
+inline constexpr std::size_t kNoBead = std::numeric_limits<std::size_t>::max();
+
 /// A matching: the detection of each bead; Assignment::kAlone: unassigned.
 using MatchSolution = std::vector<std::int64_t>;
 

@@ -13,22 +13,20 @@ namespace twincell::imaging {
 
 namespace {
 
-constexpr std::int64_t kAlone = Assignment::kAlone;
 constexpr std::int64_t kUnchanged = -2;  // in a proposal: unchanged
-constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 }  // namespace
 
 void PresentMatching::adopt(MatchSolution solution) {
   detection_of = std::move(solution);
-  std::fill(owner_of.begin(), owner_of.end(), kAlone);
+  std::fill(owner_of.begin(), owner_of.end(), Assignment::kAlone);
   for (std::size_t t = 0; t < detection_of.size(); ++t)
     if (detection_of[t] >= 0)
       owner_of[static_cast<std::size_t>(detection_of[t])] = static_cast<std::int64_t>(t);
 }
 
 MatchSolution grow_proposal(const MatchProblem& problem, const MatchSolution& present, std::size_t seed) {
-  MatchSolution solution(problem.n(), kAlone);
+  MatchSolution solution(problem.n(), Assignment::kAlone);
   std::vector<std::uint8_t> taken(problem.detections.size(), 0), settled(problem.n(), 0);
   std::priority_queue<std::pair<double, std::size_t>, std::vector<std::pair<double, std::size_t>>,
                       std::greater<>>
@@ -43,7 +41,7 @@ MatchSolution grow_proposal(const MatchProblem& problem, const MatchSolution& pr
       count += 1;
     }
     const PixelPoint there = problem.places[t] + PixelPoint{sum.x_px / count, sum.y_px / count};
-    std::pair<double, std::int64_t> best{std::numeric_limits<double>::infinity(), kAlone};
+    std::pair<double, std::int64_t> best{std::numeric_limits<double>::infinity(), Assignment::kAlone};
     for (std::size_t e = problem.first[t]; e < problem.first[t + 1]; ++e)
       if (const std::uint32_t k = problem.choices[e].column; taken[k] == 0)
         best = std::min(best, std::pair{square(problem.detections[k] - there), std::int64_t{k}});
@@ -80,10 +78,10 @@ void fuse(const MatchProblem& problem, PresentMatching& present, MatchSolution p
   const MatchSolution& current = present.detection_of;
   for (std::size_t t = 0; t < problem.n(); ++t)
     if (proposal[t] == current[t]) proposal[t] = kUnchanged;
-  std::vector<std::int64_t> claimant(problem.detections.size(), kAlone);
+  std::vector<std::int64_t> claimant(problem.detections.size(), Assignment::kAlone);
   for (std::size_t t = 0; t < problem.n(); ++t)
     if (proposal[t] >= 0) claimant[static_cast<std::size_t>(proposal[t])] = static_cast<std::int64_t>(t);
-  std::vector<std::size_t> who, node(problem.n(), kNone);
+  std::vector<std::size_t> who, node(problem.n(), kNoBead);
   for (std::size_t t = 0; t < problem.n(); ++t) {
     if (proposal[t] == kUnchanged) continue;
     node[t] = who.size();
@@ -103,11 +101,11 @@ void fuse(const MatchProblem& problem, PresentMatching& present, MatchSolution p
     move[v] = problem.own_cost(who[v], proposal[who[v]]) - problem.own_cost(who[v], current[who[v]]);
   auto meet = [&](std::size_t ta, std::size_t tb, auto&& cost) {
     const std::size_t a = node[ta], b = node[tb];
-    if (a == kNone && b == kNone) return;
+    if (a == kNoBead && b == kNoBead) return;
     const double stay = cost(current[ta], current[tb]);
-    if (b == kNone)
+    if (b == kNoBead)
       move[a] += cost(proposal[ta], current[tb]) - stay;
-    else if (a == kNone)
+    else if (a == kNoBead)
       move[b] += cost(current[ta], proposal[tb]) - stay;
     else
       two(a, b, stay, cost(current[ta], proposal[tb]), cost(proposal[ta], current[tb]),
@@ -122,7 +120,7 @@ void fuse(const MatchProblem& problem, PresentMatching& present, MatchSolution p
   for (std::size_t k = 0; k < problem.detections.size(); ++k) {
     const std::int64_t from = present.owner_of[k], to = claimant[k];
     if (from < 0 && to >= 0) move[node[static_cast<std::size_t>(to)]] -= problem.unused_cost[k];
-    if (from >= 0 && to < 0 && node[static_cast<std::size_t>(from)] != kNone)
+    if (from >= 0 && to < 0 && node[static_cast<std::size_t>(from)] != kNoBead)
       move[node[static_cast<std::size_t>(from)]] += problem.unused_cost[k];
     if (from >= 0 && to >= 0)
       two(node[static_cast<std::size_t>(from)], node[static_cast<std::size_t>(to)], 0,

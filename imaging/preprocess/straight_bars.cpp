@@ -34,7 +34,7 @@ namespace {
 
 constexpr int kMinLightWidth = 3;             // px; of the light between the border and a bar
 constexpr int kMinBarWidth = 4;               // px
-constexpr float kMinDarkness = 0.5F;          // of a bar
+constexpr float kBarDarkness = 0.5F;          // of a bar
 constexpr double kMaxOffset = 0.4;            // px; of the outer side from its local median
 constexpr double kMinStraightShare = 0.8;     // of the lines along a bar
 constexpr double kMinCrossedShare = 1.0 / 3;  // of the lines of a side, which a bar crosses
@@ -49,16 +49,16 @@ std::optional<BarLine> bar_line(const cv::Mat1f& d, Border border, int number) {
   const int n = line_length(border, d.size());
   int first = 0;
   const float* at = from;
-  for (; first < n && *at < kMinDarkness; ++first) at += step;
+  for (; first < n && *at < kBarDarkness; ++first) at += step;
   if (first < kMinLightWidth) return std::nullopt;
   int light = first;
-  for (; light < n && *at >= kMinDarkness; ++light) at += step;
+  for (; light < n && *at >= kBarDarkness; ++light) at += step;
   if (light == n || light - first < kMinBarWidth) return std::nullopt;
   const float before = from[(first - 1) * step], rise = from[first * step] - before;
   return BarLine{.number = number,
                  .first = first,
                  .light = light,
-                 .side = first - 1 + static_cast<double>((kMinDarkness - before) / std::max(rise, 1e-6F))};
+                 .side = first - 1 + static_cast<double>((kBarDarkness - before) / std::max(rise, 1e-6F))};
 }
 
 /// The lines at which the outer side is straight: it lies at the median of its neighbours within a radius.
@@ -130,7 +130,7 @@ void mark(const StraightBar& bar, const cv::Mat1f& d, cv::Mat1b& marked) {
   const auto set = [&](int number, int from, int to, bool only_dark) {
     for (int i = std::max(0, from); i < std::min(n, to); ++i)
       if (const cv::Point at = pixel_from(bar.border, d.size(), number, i);
-          !only_dark || d(at) >= kMinDarkness)
+          !only_dark || d(at) >= kBarDarkness)
         marked(at) = 255;
   };
   // Lines at which a grain of dust or a bead hides the outer side lie between others.

@@ -19,17 +19,17 @@ namespace {
 constexpr double kNoise = 0.35;  // variance of a mean of three interpolated samples, in variances of a pixel
 
 /// Part of the rim signal that does not depend on r alone, in units of the scatter along the radius.
-struct Rim {
+struct RimSignal {
   std::size_t size = 0;                                     // index of the size
   std::vector<double> turns;                                // the directions in which it is seen
   Eigen::Matrix<double, Eigen::Dynamic, kRimSteps> rest{};  // a row for each
   double noise = 0;                                         // variance of the noise
 };
 
-Rim rim_of(const RimSamples& samples, double noise) {
+RimSignal rim_of(const RimSamples& samples, double noise) {
   const auto n = static_cast<Eigen::Index>(samples.turns.size());
   if (n == 0) return {};
-  Rim rim{.turns = samples.turns, .rest = samples.levels};
+  RimSignal rim{.turns = samples.turns, .rest = samples.levels};
   Eigen::Matrix<double, Eigen::Dynamic, 3> first(n, 3);
   for (Eigen::Index k = 0; k < n; ++k) {
     const double turn = rim.turns[static_cast<std::size_t>(k)];
@@ -47,17 +47,17 @@ Rim rim_of(const RimSamples& samples, double noise) {
 /// Subtracts the part of the rim signal that varies with a function of the direction in the same way in all
 /// discs.
 template <class Function>
-void subtract_common(std::vector<Rim>& rims, Function&& of) {
+void subtract_common(std::vector<RimSignal>& rims, Function&& of) {
   Eigen::Matrix<double, 1, kRimSteps> sum = Eigen::Matrix<double, 1, kRimSteps>::Zero();
   double squares = 0;
-  for (const Rim& rim : rims)
+  for (const RimSignal& rim : rims)
     for (std::size_t k = 0; k < rim.turns.size(); ++k) {
       const double f = of(rim.turns[k]);
       sum += f * rim.rest.row(static_cast<Eigen::Index>(k));
       squares += f * f;
     }
   if (squares <= 0) return;
-  for (Rim& rim : rims)
+  for (RimSignal& rim : rims)
     for (std::size_t k = 0; k < rim.turns.size(); ++k)
       rim.rest.row(static_cast<Eigen::Index>(k)) -= of(rim.turns[k]) / squares * sum;
 }
@@ -74,9 +74,9 @@ double rim_variation(const cv::Mat& grey, const std::vector<Detection>& discs,
   grey.convertTo(levels, CV_32F);
   const double noise = noise_level(levels);
   const std::vector<RimSamples> samples = rim_samples(levels, discs, others, walls);
-  std::vector<Rim> rims;
+  std::vector<RimSignal> rims;
   for (std::size_t b = 0; b < discs.size(); ++b) {
-    Rim rim = rim_of(samples[b], noise);
+    RimSignal rim = rim_of(samples[b], noise);
     if (rim.turns.empty()) continue;
     rim.size = nearest_size(discs[b].radius, radii_px);
     rims.push_back(std::move(rim));
@@ -87,7 +87,7 @@ double rim_variation(const cv::Mat& grey, const std::vector<Detection>& discs,
     subtract_common(rims, [](double turn) { return std::sin(2 * turn); });
   }
   std::vector<std::vector<double>> variations(radii_px.size());
-  for (const Rim& rim : rims) {
+  for (const RimSignal& rim : rims) {
     constexpr double kSubtracted = 3;  // parameters of each disc
     const double freedom = (static_cast<double>(rim.turns.size()) - kSubtracted) * kRimSteps;
     variations[rim.size].push_back(rim.rest.squaredNorm() / freedom - rim.noise);

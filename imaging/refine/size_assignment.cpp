@@ -16,9 +16,9 @@ namespace twincell::imaging {
 namespace {
 
 /// Table of P by distance from the rim, for one blur.
-class Rim {
+class BlurredRim {
  public:
-  explicit Rim(double blur_px) : reach_(kSigmas * blur_px), per_px_(kSteps / (2 * reach_)) {
+  explicit BlurredRim(double blur_px) : reach_(kSigmas * blur_px), per_px_(kSteps / (2 * reach_)) {
     for (int k = 0; k <= kSteps; ++k)
       shape_.push_back(0.5 * std::erfc((k / per_px_ - reach_) / (std::numbers::sqrt2 * blur_px)));
   }
@@ -40,7 +40,7 @@ class Rim {
 
 double missing_share(const Prepared& image, const Proposal& p, double blur_px, double noise_variance) {
   constexpr double kInner = 0.5;  // of R
-  const Rim rim(blur_px);
+  const BlurredRim rim(blur_px);
   const double near = kInner * p.radius, far = p.radius + rim.reach();
   const int reach = cvCeil(far), x0 = cvRound(p.x), y0 = cvRound(p.y);
   std::vector<std::pair<double, double>> seen;  // d, P

@@ -37,14 +37,13 @@ bool overlap(const std::vector<Detection>& beads, double wider = 1) {
 /// of areas times scores was tried and failed: discs placed in the gaps between dark ones explain nineteen
 /// twentieths of their own rings.
 Trial try_plain(const cv::Mat& grey, const LocatorOptions& options) {
-  constexpr double kGood = 0.8;  // smallest score of a bead whose size is used
   constexpr std::size_t kMinDiscs = 3;
   Trial trial;
   std::vector<double> radii;
   const std::vector<Detection> beads = locate(grey, options).beads;
   if (overlap(beads)) return trial;
   for (const Detection& b : beads) {
-    if (b.score < kGood) continue;
+    if (b.score < kGoodScore) continue;
     trial.explained += gained(b);
     if (!b.edge) radii.push_back(b.radius);
   }

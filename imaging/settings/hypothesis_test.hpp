@@ -22,6 +22,8 @@ inline constexpr double kOpaque = 0.7;
 inline constexpr double kPaleClearly = 1.2;
 /// Largest side of the region of a frame that is examined, px.
 inline constexpr int kExaminedSide = 600;
+/// Smallest score of a disc whose size counts.
+inline constexpr double kGoodScore = 0.8;
 /// The range of radii that is searched, px.
 inline constexpr double kSmallestRadius = 3, kLargestRadius = 40;
 

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kMinRatio = 1.12, kMaxRatio = 2.5;              // smallest and largest ratio of two sizes
 constexpr double kSmallestDiameter = 3, kLargestDiameter = 400;  // px
-constexpr double kGood = 0.8;  // smallest score of a disc whose size is used
 
 /// Result of a trial with discs of several sizes.
 struct Mix {
@@ -40,7 +39,7 @@ Mix try_sizes(const cv::Mat& grey, const LocatorOptions& given, bool bright, dou
   std::vector<double> scores;
   for (const Detection& b : located.beads) {
     scores.push_back(b.score);
-    if (b.score < kGood) continue;
+    if (b.score < kGoodScore) continue;
     mix.explained += gained(b);
     std::size_t nearest = 0;
     for (std::size_t k = 1; k < diameters.size(); ++k)
@@ -51,7 +50,8 @@ Mix try_sizes(const cv::Mat& grey, const LocatorOptions& given, bool bright, dou
   }
   for (const Detection& b : located.dropped) {
     mix.left_out += b.verdict != Verdict::outside && b.verdict != Verdict::in_wall ? 1 : 0;
-    if (b.verdict == Verdict::wrong_radius && b.score > kGood) mix.of_wrong_radius.push_back(2 * b.radius);
+    if (b.verdict == Verdict::wrong_radius && b.score > kGoodScore)
+      mix.of_wrong_radius.push_back(2 * b.radius);
   }
   mix.beads = located.beads.size();
   mix.score = scores.empty() ? 0 : upper_median(scores);

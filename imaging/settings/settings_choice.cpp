@@ -96,10 +96,9 @@ bool shows_more_of(const TriedSettings& first, const TriedSettings& other) {
 
 /// The rejected candidates that are discs, of another size or outside the frame.
 std::vector<Detection> other_discs(const std::vector<Detection>& dropped) {
-  constexpr double kGood = 0.8;  // least score
   std::vector<Detection> discs;
   for (const Detection& d : dropped)
-    if ((d.verdict == Verdict::wrong_radius || d.verdict == Verdict::outside) && d.score > kGood)
+    if ((d.verdict == Verdict::wrong_radius || d.verdict == Verdict::outside) && d.score > kGoodScore)
       discs.push_back(d);
   return discs;
 }

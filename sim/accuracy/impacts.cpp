@@ -23,7 +23,6 @@ namespace twincell::sim {
 
 namespace {
 
-constexpr double kApart = 4;  // distance between separate impacts, sigma
 constexpr double kRunUp = 5;  // whole steps before first touch; a fraction of a step is added
 
 /// Two beads, or a bead and the plate, as used by the solver and by the exact solution.
@@ -68,12 +67,12 @@ Impact Impact::at(double degrees, bool wall, double speed, double rim) {
 }
 
 Scene impact_scene(const std::string& contact, int dimension) {
-  const std::string depth = dimension == 3 ? fmt::format("depth = {}\n", kApart) : "";
+  const std::string depth = dimension == 3 ? fmt::format("depth = {}\n", kImpactDistance) : "";
   return read_scene_text(
       fmt::format("preset = \"fortini-huang-2015\"\n[cell]\ndimension = {}\nwidth = {}\nheight = {}\n{}"
                   "lid = \"wall\"\ngravity = 0.0\n[beads]\ncount = 1\n[drive]\namplitude = 0.0\n[time]\n"
                   "stepping = \"steps\"\n[contact]\n{}",
-                  dimension, 4 * kApart, 4 * kApart, depth, contact),
+                  dimension, 4 * kImpactDistance, 4 * kImpactDistance, depth, contact),
       "impacts");
 }
 
@@ -121,7 +120,7 @@ std::vector<std::vector<Outcome>> outcomes_by_steps(const std::vector<Impact>& i
   const auto total = static_cast<int>(impacts.size()) * phases;
   scene.integrator = setting.integrator;
   scene.steps_per_contact = setting.n;
-  scene.width = kApart * (total + 1);
+  scene.width = kImpactDistance * (total + 1);
   scene.stepping = Stepping::steps;
   const Plan plan = make_plan(scene);
   System system = make_system(scene, plan);
@@ -136,7 +135,7 @@ std::vector<std::vector<Outcome>> outcomes_by_steps(const std::vector<Impact>& i
     const RelativeMotion touch = bodies.at_touch(impact);
     const double before = (kRunUp + (k % phases + 0.5) / phases) * system.dt;
     const Vec3 r = touch.r - before * touch.u;
-    const double x = kApart * (k + 1), y = scene.dimension == 3 ? kApart / 2 : 0;
+    const double x = kImpactDistance * (k + 1), y = scene.dimension == 3 ? kImpactDistance / 2 : 0;
     const double share = impact.wall ? 1 : 0.5, spin = impact.rim / (impact.wall ? 1 : 2) / bodies.radius;
     const auto add = [&](double side, double height) {
       system.beads.push_back({.x = x + side * r.x(),
@@ -149,8 +148,8 @@ std::vector<std::vector<Outcome>> outcomes_by_steps(const std::vector<Impact>& i
                               .inertia = bodies.inertia,
                               .y = y});
     };
-    add(share, impact.wall ? 0 : 2 * kApart);
-    if (!impact.wall) add(-share, 2 * kApart);
+    add(share, impact.wall ? 0 : 2 * kImpactDistance);
+    if (!impact.wall) add(-share, 2 * kImpactDistance);
     longest = std::max(longest, collision_time(bodies.setting(plan), impact.v_n));
   }
   const auto kernel = make_solver(plan, {});

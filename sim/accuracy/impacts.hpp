@@ -13,6 +13,9 @@
 
 namespace twincell::sim {
 
+/// Distance between impacts that are simulated side by side, sigma.
+inline constexpr double kImpactDistance = 4;
+
 /// Initial data of an impact of two equal beads, or of a bead and the plate at rest, at first touch. Speeds
 /// in sqrt(g sigma).
 struct Impact {

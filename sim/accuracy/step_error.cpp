@@ -42,8 +42,8 @@ double speed_of_forces(const Scene& s) {
   return std::max(2 * s.drive.velocity_bound(), std::sqrt(2 * s.g()));
 }
 
-constexpr int kPhases = 32;     ///< entry phases of the stated errors
-constexpr double kSlow = 1e-3;  ///< speed of impacts in a scene that sets nothing in motion, sqrt(g sigma)
+constexpr int kEntryPhases = 32;  ///< entry phases of the stated errors
+constexpr double kSlow = 1e-3;    ///< speed of impacts in a scene that sets nothing in motion, sqrt(g sigma)
 
 /// e of one collision for each of `phases` entry phases; nothing if a pair does not part.
 std::vector<double> restitutions(const Scene& space, double dt, double v, int phases) {
@@ -152,7 +152,7 @@ std::string clause(double speed, const std::optional<StepError>& error) {
 void state_step_error(const Scene& scene, Plan& plan, const std::optional<StartSpeeds>& start) {
   std::string text;
   for (const double speed : stated_speeds(scene, plan, start))
-    text += (text.empty() ? ": " : "; ") + clause(speed, step_error(scene, plan, kPhases, speed));
+    text += (text.empty() ? ": " : "; ") + clause(speed, step_error(scene, plan, kEntryPhases, speed));
   for (Effect& effect : plan.effects)
     if (effect.name == kTimeIntegration) effect.reason += text;
 }

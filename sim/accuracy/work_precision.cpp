@@ -12,6 +12,7 @@
 #include "core/cpu_clock.hpp"
 #include "core/error.hpp"
 #include "core/median.hpp"
+#include "sim/accuracy/impacts.hpp"
 #include "sim/laws/cell_laws.hpp"
 #include "sim/run/make_solver.hpp"
 #include "sim/run/simulation.hpp"
@@ -84,7 +85,6 @@ ImpactSpread compare(const std::vector<double>& e, const std::vector<double>& st
 }
 
 constexpr double kImpactSpeed = 1e-3;
-constexpr double kApart = 4;  ///< distance between separate impacts, sigma
 
 /// A cell without gravity, for impacts of free beads without slip (mu = 1e9).
 std::string impact_cell(double width, double height, double k_n) {
@@ -107,11 +107,12 @@ double entry_gap(int k, int phases) {
 
 ImpactSpread pair_impacts(const StepSetting& setting, int phases) {
   const int side = static_cast<int>(std::ceil(std::sqrt(phases)));
-  Run run(make_scene(setting, impact_cell(kApart * side, kApart * (side + 1), setting.k_n)));
+  Run run(
+      make_scene(setting, impact_cell(kImpactDistance * side, kImpactDistance * (side + 1), setting.k_n)));
   const double v = kImpactSpeed;
   for (int k = 0; k < phases; ++k) {
     const int column = k % side, row = k / side;
-    const double x = kApart * (0.5 + column), z = kApart * (1 + row);
+    const double x = kImpactDistance * (0.5 + column), z = kImpactDistance * (1 + row);
     const double half = run.scene.radius + entry_gap(k, phases) * v * run.system.dt / 2;
     run.add(x - half, z, v / 2, v / 2);
     run.add(x + half, z, -v / 2, -v / 2);
@@ -128,10 +129,10 @@ ImpactSpread pair_impacts(const StepSetting& setting, int phases) {
 }
 
 ImpactSpread wall_impacts(const StepSetting& setting, int phases) {
-  Run run(make_scene(setting, impact_cell(kApart * phases, 10, setting.k_n)));
+  Run run(make_scene(setting, impact_cell(kImpactDistance * phases, 10, setting.k_n)));
   const double v = kImpactSpeed;
   for (int k = 0; k < phases; ++k)
-    run.add(kApart * (0.5 + k), run.scene.radius + entry_gap(k, phases) * v * run.system.dt, v, -v);
+    run.add(kImpactDistance * (0.5 + k), run.scene.radius + entry_gap(k, phases) * v * run.system.dt, v, -v);
   run.kernel->advance(run.system, impact_steps(6, setting.n));
   std::vector<double> e, sticking;
   for (const Bead& b : run.system.beads) {
