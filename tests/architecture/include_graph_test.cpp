@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+namespace twincell::include_graph_test {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -253,3 +255,5 @@ TEST(IncludeGraph, InterfacesIncludeInterfacesOnly) {
 }
 
 }  // namespace
+
+}  // namespace twincell::include_graph_test

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+namespace twincell::namespaces_test {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -78,4 +80,21 @@ TEST(Namespaces, TheVocabularyIsInNoneOfThem) {
         EXPECT_FALSE(all.contains(name)) << file << " opens namespace twincell::" << name;
 }
 
+TEST(Namespaces, EveryTestFileHasItsOwn) {  // the files are compiled in batches (tests/CMakeLists.txt)
+  std::size_t files = 0;
+  for (const fs::path& file : sources_of("tests")) {
+    const std::string stem = file.stem();
+    if (!stem.ends_with("_test") || file.extension() != ".cpp") continue;
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    ++files;
+    EXPECT_TRUE(
+        std::regex_search(text.str(), std::regex("(^|\n)namespace twincell(::\\w+)*::" + stem + " \\{\n")))
+        << file << " must be in namespace twincell::" << stem << " or twincell::FOLDER::" << stem;
+  }
+  EXPECT_GE(files, 200U) << "the tests were not found";
+}
+
 }  // namespace
+
+}  // namespace twincell::namespaces_test

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+namespace twincell::presets_test {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -73,3 +75,5 @@ TEST(Presets, EachAlternativeOfAFilterSelectsATest) {
 }
 
 }  // namespace
+
+}  // namespace twincell::presets_test

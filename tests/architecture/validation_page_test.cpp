@@ -9,6 +9,8 @@
 #include <sstream>
 #include <string>
 
+namespace twincell::validation_page_test {
+
 namespace {
 
 std::string text_of(const std::filesystem::path& file) {
@@ -34,3 +36,5 @@ TEST(ValidationPage, HasEveryIdThatATestChecks) {
 }
 
 }  // namespace
+
+}  // namespace twincell::validation_page_test

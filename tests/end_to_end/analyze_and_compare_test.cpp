@@ -11,7 +11,7 @@
 #include "tests/support/rigid_bed.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-namespace twincell {
+namespace twincell::analyze_and_compare_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -259,4 +259,4 @@ TEST(Compare, Refusals) {
   EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"sim.h5", "undriven.h5"}));
 }
 
-}  // namespace twincell
+}  // namespace twincell::analyze_and_compare_test

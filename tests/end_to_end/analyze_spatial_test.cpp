@@ -9,7 +9,7 @@
 #include "tests/support/rigid_bed.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-namespace twincell {
+namespace twincell::analyze_spatial_test {
 namespace {
 
 std::string film(const std::filesystem::path& path) {
@@ -84,4 +84,4 @@ TEST(AnalyzeSpatial, Refusals) {
   EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"bed.h5"}));
 }
 
-}  // namespace twincell
+}  // namespace twincell::analyze_spatial_test

@@ -1,18 +1,19 @@
 // Bad input as a user meets it: one sentence that names the cause, the documented exit code, and no partial
 // output.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
 
 #include "tests/support/environment_variable.hpp"
+#include "tests/support/pictures.hpp"
 #include "tests/support/program.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-namespace twincell {
+namespace twincell::bad_input_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -84,7 +85,7 @@ TEST_F(BadInput, PicturesWithoutAnything) {
   const auto picture = [&](int width, int height, int type, double value) {
     cv::Mat m(height, width, type, cv::Scalar(value));
     if (type == CV_8U && value == 1) cv::randu(m, 0, 255);
-    cv::imwrite(at("a.tif"), m);
+    write_picture(at("a.tif"), m);
   };
   const std::vector<std::pair<int, int>> sizes = {{1, 1},   {2, 2},   {1, 100}, {100, 1},  {5, 5},
                                                   {7, 700}, {2, 700}, {3, 80},  {200, 150}};
@@ -302,7 +303,7 @@ TEST_F(BadInput, InterruptLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::bad_input_test
 
 TEST(MissingTmpdir, IsNoMatterForHelp) {
   const char* const given = std::getenv("TMPDIR");

@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 
+#include "tests/support/pictures.hpp"
 #include "tests/support/program.hpp"
 
-namespace twincell {
+namespace twincell::bumped_camera_test {
 namespace {
 
 constexpr int kFrames = 80, kBumped = 47;
@@ -24,9 +24,9 @@ void write_bumped(const std::filesystem::path& film, const std::filesystem::path
       std::filesystem::create_symlink(film / name, to / name);
       continue;
     }
-    cv::Mat frame = cv::imread((film / name).string(), cv::IMREAD_GRAYSCALE);
+    cv::Mat frame = read_picture(film / name);
     cv::warpAffine(frame, frame, shift, frame.size(), cv::INTER_NEAREST, cv::BORDER_REPLICATE);
-    cv::imwrite((to / name).string(), frame);
+    write_picture(to / name, frame);
   }
 }
 
@@ -48,4 +48,4 @@ TEST(BumpedCamera, TrackNamesTheFrameAndTheShift) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::bumped_camera_test

@@ -21,7 +21,7 @@
 #include "trajectory/calibration_file.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-namespace twincell {
+namespace twincell::calibrate_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -481,4 +481,4 @@ TEST(Calibrate, SaysWhatIsWrongAndLeavesNothing) {
   EXPECT_FALSE(fs::exists(folder / "c.toml"));
 }
 
-}  // namespace twincell
+}  // namespace twincell::calibrate_test

@@ -17,7 +17,7 @@
 #include "tests/support/datasets.hpp"
 #include "tests/support/program.hpp"
 
-namespace twincell {
+namespace twincell::checkpoint_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -349,4 +349,4 @@ TEST_F(Checkpoints, AFolderThatCannotBeIsRefusedAtOnce) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::checkpoint_test

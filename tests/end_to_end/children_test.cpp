@@ -8,7 +8,7 @@
 #include "tests/support/program.hpp"
 #include "tests/support/put_file.hpp"
 
-namespace twincell {
+namespace twincell::children_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -52,4 +52,4 @@ TEST(Children, GnuplotInheritsNoFile) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::children_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/program.hpp"
 
-namespace twincell {
+namespace twincell::cost_test {
 namespace {
 
 TEST(Cost, SaysWhatAccuracyCosts) {
@@ -144,4 +144,4 @@ TEST(Cost, RefusesBeforeItMeasures) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::cost_test

@@ -22,7 +22,7 @@
 #include "twin/comparison.hpp"
 #include "twin/sweep_results.hpp"
 
-namespace twincell {
+namespace twincell::damaged_records_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -319,4 +319,4 @@ TEST_F(DamagedRecords, ManifestOfAFolder) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::damaged_records_test

@@ -11,7 +11,7 @@
 #include "tests/support/file_bytes.hpp"
 #include "tests/support/program.hpp"
 
-namespace twincell {
+namespace twincell::device_test {
 namespace {
 
 constexpr int kDone = 0, kFailed = 1, kUsage = 2;
@@ -127,4 +127,4 @@ TEST_F(SweepOnDevice, WhatItCannotRunIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::device_test

@@ -13,7 +13,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-using namespace twincell;
+namespace twincell::doubtful_runs_test {
 
 namespace {
 
@@ -38,8 +38,6 @@ class DoubtfulRuns : public ::testing::Test {
   }
   const TemporaryFolder folder_;
 };
-
-}  // namespace
 
 TEST_F(DoubtfulRuns, OtherGravityOrWallsAreNotPooled) {
   ASSERT_EQ(simulate("a.h5", {}).code, 0);
@@ -297,3 +295,7 @@ TEST_F(DoubtfulRuns, ImportedVelocitiesRadiiAndJumpsThatContradictThePositionsAr
   EXPECT_NE(note(1, 1, 0).find(wide), std::string::npos);
   EXPECT_NE(note(1, 0.5, 1000).find(jump), std::string::npos);
 }
+
+}  // namespace
+
+}  // namespace twincell::doubtful_runs_test

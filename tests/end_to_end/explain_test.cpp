@@ -11,7 +11,7 @@
 #include "tests/support/program.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-namespace twincell {
+namespace twincell::explain_test {
 namespace {
 
 constexpr int kUsage = 2;
@@ -198,4 +198,4 @@ TEST_F(Explain, WhatIsOffHasNoColumnAndTheFileHoldsThePlan) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::explain_test

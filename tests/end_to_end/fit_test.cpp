@@ -10,7 +10,7 @@
 #include "tests/support/program.hpp"
 #include "tests/support/put_file.hpp"
 
-namespace twincell {
+namespace twincell::fit_test {
 namespace {
 
 std::string slips(const TemporaryFolder& folder) {
@@ -121,4 +121,4 @@ TEST(Fit, ALawThatMissesThePointsIsNoted) {
   EXPECT_EQ(good.out.find("misses the points"), std::string::npos) << good.out;
 }
 
-}  // namespace twincell
+}  // namespace twincell::fit_test

@@ -6,15 +6,15 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/hdf5.hpp"
 #include "tests/support/camera_files.hpp"
 #include "tests/support/file_bytes.hpp"
+#include "tests/support/pictures.hpp"
 #include "tests/support/program.hpp"
 
-namespace twincell {
+namespace twincell::frames_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -49,7 +49,7 @@ class Frames : public ::testing::Test {
     };
     fs::create_directory(at("folder"));
     for (int f = 0; f < kFrames; ++f)
-      cv::imwrite(at("folder/f" + std::to_string(f) + ".png"), frames[static_cast<std::size_t>(f)]);
+      write_picture(at("folder/f" + std::to_string(f) + ".png"), frames[static_cast<std::size_t>(f)]);
     put(at("a.cine"), cine_file({.width = kWidth, .height = kHeight, .frames = kFrames}, value));
     put(at("packed.cine"),
         cine_file({.width = kWidth, .height = kHeight, .frames = kFrames, .container = 12, .packing = 1024},
@@ -106,8 +106,8 @@ TEST_F(Frames, TheSameInEveryFormatAndForAnyNumberOfThreads) {
 }
 
 TEST_F(Frames, AreDividedByAFlatField) {
-  cv::imwrite(at("blank.png"), cv::Mat(kHeight, kWidth, CV_16U, cv::Scalar(215 * 16)));
-  cv::imwrite(at("small.png"), cv::Mat(kHeight / 2, kWidth, CV_16U, cv::Scalar(215 * 16)));
+  write_picture(at("blank.png"), cv::Mat(kHeight, kWidth, CV_16U, cv::Scalar(215 * 16)));
+  write_picture(at("small.png"), cv::Mat(kHeight / 2, kWidth, CV_16U, cv::Scalar(215 * 16)));
   const auto located = [&](const std::vector<std::string>& options) {
     fs::remove(at("beads.csv"));
     std::vector<std::string> words = {"locate", at("folder"),    "--diameter", "15",
@@ -243,4 +243,4 @@ TEST_F(Frames, WithoutFfmpegOneSentenceSaysSo) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::frames_test

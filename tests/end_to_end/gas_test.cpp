@@ -11,7 +11,7 @@
 
 #include "tests/support/program.hpp"
 
-namespace twincell {
+namespace twincell::gas_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -171,4 +171,4 @@ TEST(GasFigures, OnlySomeTakeAWindow) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::gas_test

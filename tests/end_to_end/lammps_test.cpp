@@ -15,7 +15,7 @@
 #include "tests/support/put_file.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-namespace twincell {
+namespace twincell::lammps_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -345,4 +345,4 @@ TEST(LammpsDeck, WithoutAnIntegratorIsOfLammpssOwnAndSaysSo) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::lammps_test

@@ -4,17 +4,17 @@
 #include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "tests/support/pictures.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell {
+namespace twincell::locate_explain_test {
 namespace {
 
 /// Black discs of 16 px, apart from each other, on a light ground with noise.
@@ -35,7 +35,7 @@ void write_discs(const std::string& file, float middle = 20) {
   for (float& level : picture) level += normal(random);
   cv::Mat1b bytes;
   picture.convertTo(bytes, CV_8U);
-  cv::imwrite(file, bytes);
+  write_picture(file, bytes);
 }
 
 }  // namespace
@@ -101,7 +101,7 @@ TEST(LocateExplain, WhatIsNotRoundIsRefusedUnlessADiameterIsGiven) {
                          cv::LINE_AA);
     }
   cv::GaussianBlur(squares, squares, {0, 0}, 0.8);
-  cv::imwrite(picture, squares);
+  write_picture(picture, squares);
   const Ran refused = run_program({"locate", picture, "-o", table, "--explain"});
   EXPECT_EQ(refused.code, 3) << refused.err;
   EXPECT_NE(refused.err.find("what stands out is not round"), std::string::npos) << refused.err;
@@ -118,4 +118,4 @@ TEST(LocateExplain, WhatIsNotRoundIsRefusedUnlessADiameterIsGiven) {
   EXPECT_EQ(given.code, 0) << given.err;
 }
 
-}  // namespace twincell
+}  // namespace twincell::locate_explain_test

@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "core/atomic_file.hpp"
+#include "tests/support/pictures.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell {
+namespace twincell::locate_view_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,7 +24,7 @@ const fs::path kDemo = fs::path(TWINCELL_SOURCE_DIR) / "data_samples/demo/gamma-
 
 /// A frame of the demo, 100 beads of 12 px, with two discs in its empty part that absorb little.
 cv::Mat with_pale_discs() {
-  cv::Mat picture = cv::imread((kDemo / "frame_00000.png").string(), cv::IMREAD_GRAYSCALE);
+  cv::Mat picture = read_picture(kDemo / "frame_00000.png");
   for (const int x : {45, 90}) {
     const double light = picture.at<uchar>(30, x);
     cv::circle(picture, {x, 30}, 6, 0.75 * light, cv::FILLED, cv::LINE_AA);
@@ -92,7 +92,7 @@ TEST(LocateView, HoldsEveryCandidateWithItsReasonAndAsksForNothing) {
   const TemporaryFolder folder;
   const std::string picture = folder / "discs.png", beads = folder / "b.csv", page = folder / "view.html",
                     table = folder / "c.csv";
-  cv::imwrite(picture, with_pale_discs());
+  write_picture(picture, with_pale_discs());
   const Ran ran = run_program({"locate", picture, "-o", beads, "--view", page, "--candidates", table});
   ASSERT_EQ(ran.code, 0) << ran.err;
   EXPECT_NE(ran.out.find(page), std::string::npos);
@@ -111,7 +111,7 @@ TEST(LocateView, HoldsEveryCandidateWithItsReasonAndAsksForNothing) {
   // The picture is in the page, whole.
   const std::string uri = data["frames"][0]["picture"];
   EXPECT_TRUE(uri.starts_with("data:image/png;base64,"));
-  EXPECT_EQ(data["frames"][0]["width"], cv::imread(picture).cols);
+  EXPECT_EQ(data["frames"][0]["width"], read_picture(picture).cols);
   for (const char* outside : {"src=\"http", "href=\"http", "@import", "url(", "fetch("})
     EXPECT_EQ(html.find(outside), std::string::npos) << outside;
   EXPECT_EQ(data["command"], "twincell locate " + picture + " -o " + beads);
@@ -149,7 +149,7 @@ TEST(LocateView, LargeFramesAreReducedAndPlacesAreNot) {
   cv::Mat1b large(1000, 2400, uchar{200});
   for (int i = 0; i < 20; ++i)
     cv::circle(large, {100 + 110 * i, 300 + 20 * i}, 20, 20, cv::FILLED, cv::LINE_AA);
-  cv::imwrite(folder / "large.png", large);
+  write_picture(folder / "large.png", large);
   const std::string page = folder / "view.html";
   const Ran ran = run_program({"locate", folder / "large.png", "-q", "-o", folder / "b.csv", "--view", page,
                                "--diameter", "40", "--dark"});
@@ -181,4 +181,4 @@ TEST(LocateView, MinExplainedDropsBeadsBelowIt) {
   EXPECT_NE(refused.err.find("min-explained"), std::string::npos) << refused.err;
 }
 
-}  // namespace twincell
+}  // namespace twincell::locate_view_test

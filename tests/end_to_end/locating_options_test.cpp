@@ -1,18 +1,19 @@
 // The options of the verbs that locate beads: the same for locate, track and match; the part of the picture
 // and of the stack that is searched.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
 
+#include "tests/support/pictures.hpp"
 #include "tests/support/program.hpp"
 
-namespace twincell {
+namespace twincell::locating_options_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,9 +109,9 @@ TEST(LocatingOptions, NothingIsFoundOutsideTheRegionAndCoordinatesStay) {
   EXPECT_GE(well_inside.size(), 12U);
   // The light is estimated from the region alone, which here is full of beads.
   EXPECT_LT(farthest_from(well_inside, whole), 0.1);
-  cv::Mat1b mask(cv::imread((kDemo / "frame_00007.png").string(), cv::IMREAD_UNCHANGED).size(), uchar{255});
+  cv::Mat1b mask(read_picture(kDemo / "frame_00007.png").size(), uchar{255});
   mask.colRange(0, 70) = 0;
-  cv::imwrite(folder / "mask.png", mask);
+  write_picture(folder / "mask.png", mask);
   const auto masked = locate("mask.csv", {"--mask", folder / "mask.png"});
   EXPECT_GE(masked.size(), 30U);
   for (const auto& [x, y] : masked) EXPECT_GT(x, 69.5 + 5) << y;
@@ -139,7 +140,7 @@ TEST(LocatingOptions, FramesKeepTheirNumbersAndPhases) {
 
 TEST(LocatingOptions, BadOnesAreRefusedInASentence) {
   const TemporaryFolder folder;
-  cv::imwrite(folder / "small.png", cv::Mat1b(10, 20, uchar{1}));
+  write_picture(folder / "small.png", cv::Mat1b(10, 20, uchar{1}));
   for (const auto& [option, value, said] : std::vector<std::array<std::string, 3>>{
            {"--roi", "100,100,500,10", "reaches beyond the picture of"},
            {"--roi", "1,2,3", "left,top,width,height"},
@@ -174,13 +175,13 @@ TEST(LocatingOptions, AStretchedPictureIsNoMotion) {
   const TemporaryFolder folder;
   const fs::path stack = folder.path() / "blurred";
   fs::create_directory(stack);
-  cv::Mat once = cv::imread((kDemo / "frame_00007.png").string(), cv::IMREAD_UNCHANGED), smeared;
+  cv::Mat once = read_picture(kDemo / "frame_00007.png"), smeared;
   cv::blur(once, smeared, {5, 1});
-  for (int f = 0; f < 3; ++f) cv::imwrite((stack / fmt::format("f{}.png", f)).string(), smeared);
+  for (int f = 0; f < 3; ++f) write_picture(stack / fmt::format("f{}.png", f), smeared);
   const Ran ran = run_program({"locate", stack, "-o", folder / "x.csv", "--diameter", "12", "--dark"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   EXPECT_EQ(ran.out.find("moved by"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("no motion is concluded"), std::string::npos) << ran.out;
 }
 
-}  // namespace twincell
+}  // namespace twincell::locating_options_test

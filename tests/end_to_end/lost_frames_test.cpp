@@ -8,7 +8,7 @@
 
 #include "tests/support/program.hpp"
 
-namespace twincell {
+namespace twincell::lost_frames_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -195,4 +195,4 @@ TEST(LostFrames, AWrongNumberOfFramesPerCycleIsRefused) {
   EXPECT_FALSE(fs::exists(to));
 }
 
-}  // namespace twincell
+}  // namespace twincell::lost_frames_test

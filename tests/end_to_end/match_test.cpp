@@ -6,20 +6,21 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/videoio.hpp>
+#include <opencv2/imgproc.hpp>
 #include <set>
 
 #include "core/atomic_file.hpp"
+#include "imaging/codecs/codecs.hpp"
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/file_bytes.hpp"
+#include "tests/support/pictures.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/put_file.hpp"
 #include "tests/support/rigid_bed.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 #include "twin/twin.hpp"
 
-namespace twincell {
+namespace twincell::match_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -65,9 +66,9 @@ fs::path film_above_plate(const TemporaryFolder& folder, double gamma, int seed)
   const double plate_px = imaging::read_cell(stack / "CELL.toml").origin->y_px;
   for (const auto& entry : fs::directory_iterator(stack))
     if (entry.path().extension() == ".png") {
-      const cv::Mat all = cv::imread(entry.path().string(), cv::IMREAD_UNCHANGED);
+      const cv::Mat all = read_picture(entry.path());
       const int rows = static_cast<int>(plate_px - 12 * (gamma + 0.3));
-      cv::imwrite(entry.path().string(), all.rowRange(0, rows));
+      write_picture(entry.path(), all.rowRange(0, rows));
     }
   return stack;
 }
@@ -426,8 +427,7 @@ TEST(Match, AStackWithoutBeadsIsRefused) {
   const fs::path stack = folder / "blank";
   fs::create_directory(stack);
   for (int f = 0; f < 10; ++f)
-    cv::imwrite((stack / ("frame_" + std::to_string(f) + ".png")).string(),
-                cv::Mat(218, 160, CV_8U, cv::Scalar(128)));
+    write_picture(stack / ("frame_" + std::to_string(f) + ".png"), cv::Mat(218, 160, CV_8U, cv::Scalar(128)));
   for (const std::vector<std::string>& verb :
        {std::vector<std::string>{"track", stack, "--cell", kStack / "CELL.toml", "-o", folder / "t.h5"},
         std::vector<std::string>{"match", stack, kStack / "CELL.toml", "-o", folder / "twin"}}) {
@@ -519,13 +519,13 @@ TEST(Match, ABedAtRestContradictsAStatedAmplitude) {
   const TemporaryFolder folder;
   const fs::path stack = folder / "still";
   fs::create_directory(stack);
-  const cv::Mat frame = cv::imread((kStack / "frame_00000.png").string(), cv::IMREAD_UNCHANGED);
+  const cv::Mat frame = read_picture(kStack / "frame_00000.png");
   cv::RNG random(3);
   for (int f = 0; f < 60; ++f) {
     cv::Mat noise(frame.size(), CV_16S), noisy;
     random.fill(noise, cv::RNG::NORMAL, 0, 1);
     cv::add(frame, noise, noisy, cv::noArray(), CV_8U);
-    cv::imwrite((stack / fmt::format("frame_{:05}.png", f)).string(), noisy);
+    write_picture(stack / fmt::format("frame_{:05}.png", f), noisy);
   }
   const Ran refused = run_program({"match", stack, kStack / "CELL.toml", "-o", folder / "twin", "--twins",
                                    "1", "--no-film", "--set", "time.steps_per_contact=20", "-q"});
@@ -611,10 +611,14 @@ TEST(Match, ThePlaybackRateOfAVideoIsNotTheCamerasRate) {
     std::set<fs::path> pictures;
     for (const auto& entry : fs::directory_iterator(kStack))
       if (entry.path().extension() == ".png") pictures.insert(entry.path());
-    const cv::Mat first = cv::imread(pictures.begin()->string(), cv::IMREAD_GRAYSCALE);
-    cv::VideoWriter out(video.string(), cv::VideoWriter::fourcc('F', 'F', 'V', '1'), 25, first.size(), false);
-    ASSERT_TRUE(out.isOpened());
-    for (const fs::path& picture : pictures) out.write(cv::imread(picture.string(), cv::IMREAD_GRAYSCALE));
+    const auto out =
+        imaging::codecs().create_film(video.string(), "FFV1", 25, read_picture(*pictures.begin()).size());
+    ASSERT_NE(out, nullptr);
+    for (const fs::path& picture : pictures) {
+      cv::Mat colour;
+      cv::cvtColor(read_picture(picture), colour, cv::COLOR_GRAY2BGR);
+      out->write(colour);
+    }
   }
   const std::string right = stated_drives()[0].lines;
   const fs::path cell = laboratory_cell(kStack, folder / "cell.toml", right);
@@ -758,4 +762,4 @@ TEST(Match, TheCellsDriveDisplacesTheScenes) {
   EXPECT_EQ(shaken.drive.harmonics.size(), 2);
 }
 
-}  // namespace twincell
+}  // namespace twincell::match_test

@@ -1,21 +1,22 @@
 // `new` as a user runs it: the shipped stacks against their hand-written cell files, and stacks with faults.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
 
 #include "imaging/cell/cell.hpp"
 #include "tests/support/file_bytes.hpp"
+#include "tests/support/pictures.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/put_file.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-namespace twincell {
+namespace twincell::new_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -33,8 +34,7 @@ fs::path copy_of(const TemporaryFolder& folder, const std::string& name, int n,
   fs::create_directory(stack);
   for (int f = 0; f < n; ++f) {
     if (change)
-      cv::imwrite((stack / frame_name(f)).string(),
-                  change(cv::imread((kDemo / name / frame_name(f)).string(), cv::IMREAD_GRAYSCALE), f));
+      write_picture(stack / frame_name(f), change(read_picture(kDemo / name / frame_name(f)), f));
     else
       fs::copy_file(kDemo / name / frame_name(f), stack / frame_name(f));
   }
@@ -313,7 +313,7 @@ void draw_beads(const fs::path& trajectory, const fs::path& stack, double pixels
     cv::GaussianBlur(picture, picture, {}, 0.8);
     noise.fill(grain, cv::RNG::NORMAL, 0, 2);
     cv::add(picture, grain, picture, {}, CV_8U);
-    cv::imwrite((stack / frame_name(static_cast<int>(f))).string(), picture);
+    write_picture(stack / frame_name(static_cast<int>(f)), picture);
   }
 }
 
@@ -477,9 +477,9 @@ TEST(New, CoarseBrightBeadsUnderALampInFrontAreMeasured) {
   // seen.
   for (const auto& entry : fs::directory_iterator(folder / "film"))
     if (entry.path().extension() == ".png") {
-      cv::Mat frame = cv::imread(entry.path().string(), cv::IMREAD_GRAYSCALE);
+      cv::Mat frame = read_picture(entry.path());
       cv::putText(frame, "01234", {2, 11}, cv::FONT_HERSHEY_SIMPLEX, 0.4, 255);
-      cv::imwrite(entry.path().string(), frame);
+      write_picture(entry.path(), frame);
     }
   ASSERT_EQ(
       run_program({"new", folder / "film", "-o", folder / "text.toml", "--drive-gamma", "1.4", "-q"}).code,
@@ -507,4 +507,4 @@ TEST(New, ATroughThatIsNotSeenInventsNoLostFrames) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::new_test

@@ -10,7 +10,7 @@
 
 #include "tests/support/program.hpp"
 
-namespace twincell {
+namespace twincell::options_test {
 namespace {
 
 /// Every option of the program without its unit suffix, and its quantity. A new option gets a row here; if
@@ -299,4 +299,4 @@ TEST(Options, AMisplacedVerbIsRefusedWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::options_test

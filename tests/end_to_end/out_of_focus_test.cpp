@@ -10,7 +10,7 @@
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell {
+namespace twincell::out_of_focus_test {
 namespace {
 
 // A blur of a fifth of the radius: the edges of walls and plate darken the pixels beside them, where beads
@@ -37,4 +37,4 @@ TEST(OutOfFocus, BeadsAtWallsAreAsGoodAsTheOthers) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::out_of_focus_test

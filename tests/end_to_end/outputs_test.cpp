@@ -19,7 +19,7 @@
 #include "core/sha256.hpp"
 #include "tests/support/program.hpp"
 
-namespace twincell {
+namespace twincell::outputs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -625,4 +625,4 @@ TEST(Outputs, ASecondSignalLeavesNothingEither) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::outputs_test

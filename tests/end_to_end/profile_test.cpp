@@ -13,7 +13,7 @@
 #include "tests/support/program.hpp"
 #include "tests/support/put_file.hpp"
 
-namespace twincell {
+namespace twincell::profile_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -186,4 +186,4 @@ TEST_F(ProfileTest, OfASweep) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::profile_test

@@ -6,16 +6,16 @@
 
 #include <fstream>
 #include <map>
-#include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
 #include "core/sha256.hpp"
+#include "tests/support/pictures.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/put_file.hpp"
 #include "tests/support/rigid_bed.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-namespace twincell {
+namespace twincell::refusals_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -85,8 +85,8 @@ class Refusals : public ::testing::Test {
     fs::create_hard_link(at("g.csv"), at("link.csv"));
     fs::create_directory(at("mixed"));
     for (int k = 0; k < 3; ++k)
-      cv::imwrite(at("mixed/f" + std::to_string(k) + ".png"),
-                  cv::Mat(64, k == 2 ? 60 : 64, CV_8U, cv::Scalar(200)));
+      write_picture(at("mixed/f" + std::to_string(k) + ".png"),
+                    cv::Mat(64, k == 2 ? 60 : 64, CV_8U, cv::Scalar(200)));
   }
   static void TearDownTestSuite() {
     delete folder_;
@@ -526,4 +526,4 @@ TEST_F(Refusals, SmallestTrajectories) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::refusals_test

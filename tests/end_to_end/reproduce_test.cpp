@@ -9,7 +9,7 @@
 
 #include "tests/support/program.hpp"
 
-namespace twincell {
+namespace twincell::reproduce_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -236,4 +236,4 @@ TEST(Reproduce, AnUnknownNameListsTheKnown) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::reproduce_test

@@ -2,15 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
 
 #include "tests/support/environment_variable.hpp"
+#include "tests/support/pictures.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/put_file.hpp"
 
-namespace twincell {
+namespace twincell::stop_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -42,7 +42,7 @@ class Stop : public ::testing::Test {
     put_file("plan.toml", "scene = \"s.toml\"\n[axes]\nstart.seed = [" + seeds + "]\n");
     fs::create_directory("frames");
     const cv::Mat picture = many_discs();
-    for (const char* name : {"frames/a.png", "frames/b.png", "frames/c.png"}) cv::imwrite(name, picture);
+    for (const char* name : {"frames/a.png", "frames/b.png", "frames/c.png"}) write_picture(name, picture);
     fs::create_directory("out");
   }
   ~Stop() override { fs::current_path(old_); }
@@ -132,4 +132,4 @@ TEST_F(Stop, ARunThatIsSavedIsSavedFirst) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::stop_test

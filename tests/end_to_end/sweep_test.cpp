@@ -13,7 +13,7 @@
 #include "tests/support/file_bytes.hpp"
 #include "tests/support/program.hpp"
 
-namespace twincell {
+namespace twincell::sweep_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -560,4 +560,4 @@ TEST_F(Sweeps, ADamagedResultIsNotRead) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::sweep_test

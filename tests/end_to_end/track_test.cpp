@@ -7,17 +7,17 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "tests/support/pictures.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-using namespace twincell;
+namespace twincell::track_test {
 
 namespace {
 
@@ -157,12 +157,12 @@ TEST(Track, ADiscThatStandsStillInAMovingBedIsNamed) {
   for (const bool bubble : {false, true}) {
     for (int f = 0; f < 40; ++f) {
       const std::string name = fmt::format("frame_{:05}.png", f);
-      cv::Mat frame = cv::imread((demo / name).string(), cv::IMREAD_GRAYSCALE);
+      cv::Mat frame = read_picture(demo / name);
       if (bubble) {
         cv::circle(frame, {80, 30}, 6, 20, -1, cv::LINE_AA);
         cv::GaussianBlur(frame(cv::Rect(65, 15, 31, 31)), frame(cv::Rect(65, 15, 31, 31)), {0, 0}, 0.7);
       }
-      cv::imwrite((stack / name).string(), frame);
+      write_picture(stack / name, frame);
     }
     const Ran ran = run_program(
         {"track", stack, "-o", folder / "t.h5", "--cell", demo / "CELL.toml", "--force", "--json"});
@@ -396,13 +396,13 @@ TEST(Track, DigitsInADarkPlateAreNoBeads) {
   constexpr int kFrames = 60, kCycle = 20;
   for (int f = 0; f < kFrames; ++f) {
     const std::string name = fmt::format("frame_{:05}.png", f);
-    cv::Mat frame = cv::imread((demo / name).string(), cv::IMREAD_GRAYSCALE);
+    cv::Mat frame = read_picture(demo / name);
     // The plate's edge is at row 230.8 - 19.2 sin(2 pi f/20): here it is above the digit by 7 px or more.
     if (const int phase = f % kCycle; phase >= 3 && phase <= 7) {
       cv::circle(frame, {60, 231}, 8, cv::Scalar(200), cv::FILLED, cv::LINE_AA);
       cv::circle(frame, {60, 231}, 6, cv::Scalar(5), cv::FILLED, cv::LINE_AA);
     }
-    cv::imwrite((stack / name).string(), frame);
+    write_picture(stack / name, frame);
   }
   const Ran ran =
       run_program({"track", stack, "--cell", demo / "CELL.toml", "-o", folder / "exp.h5", "--json"});
@@ -417,3 +417,5 @@ TEST(Track, DigitsInADarkPlateAreNoBeads) {
   EXPECT_EQ(ran.err.find("beneath the plate"), std::string::npos) << ran.err;
   EXPECT_EQ(said["slots"], 100);
 }
+
+}  // namespace twincell::track_test

@@ -22,11 +22,11 @@
 
 namespace twincell::sim {
 
-struct Laws {
+struct LawWords {
   std::string normal, tangential, rolling;
 };
-inline std::vector<Laws> all_laws() {
-  std::vector<Laws> all;
+inline std::vector<LawWords> all_laws() {
+  std::vector<LawWords> all;
   for (const auto& normal : normal_words())
     for (const auto& tangential : tangential_words())
       for (const auto& rolling : rolling_words())
@@ -47,7 +47,7 @@ inline void PrintTo(const Case& c, std::ostream* out) {
 
 /// A small bed, dense and fast enough that contacts begin, slide, stick, roll and end from the first steps
 /// on.
-inline Scene scene_of(const Case& c, const Laws& laws) {
+inline Scene scene_of(const Case& c, const LawWords& laws) {
   std::string text = "[cell]\ndimension = " + std::to_string(c.dimension);
   text += c.dimension == 2 ? "\nwidth = 5.0\n" : "\nwidth = 3.8\ndepth = 3.8\n";
   if (c.periodic) text += "sides = \"periodic\"\n";

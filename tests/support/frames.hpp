@@ -1,13 +1,11 @@
 #pragma once
 /// \file
-/// Helpers that write stacks, read all of their frames, and return the message of a refusal.
+/// Helpers that read all frames of a stack, compare them, and return the message of a refusal.
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
@@ -18,19 +16,6 @@ namespace twincell {
 
 inline bool equal(const cv::Mat& a, const cv::Mat& b) {
   return a.type() == b.type() && a.size() == b.size() && cv::norm(a, b, cv::NORM_INF) == 0;
-}
-
-inline void write(const std::filesystem::path& file, const cv::Mat& picture) {
-  ASSERT_TRUE(cv::imwrite(file.string(), picture)) << file;
-}
-
-inline std::string contents(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
-inline void put(const std::filesystem::path& file, const std::string& bytes) {
-  std::ofstream(file, std::ios::binary) << bytes;
 }
 
 /// All frames of a stack. A returned frame does not change when the next one is read.

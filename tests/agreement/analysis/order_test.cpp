@@ -9,8 +9,9 @@
 
 #include "analysis/order/bond_order.hpp"
 
-using namespace twincell;
-using namespace twincell::analysis;
+namespace twincell::order_test {
+
+using namespace analysis;
 
 namespace {
 
@@ -148,3 +149,5 @@ TEST(Neighbours, ATieAtTheCutoffCounts) {
   EXPECT_EQ(find_neighbours(frame, box, 1.25).count(1), 1U);
   EXPECT_EQ(find_neighbours(frame, box, std::nextafter(1.25, 1.0)).count(0), 0U);
 }
+
+}  // namespace twincell::order_test

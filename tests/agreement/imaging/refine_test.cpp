@@ -16,7 +16,7 @@
 #include "imaging/disc/ring_normal_equations.hpp"
 #include "imaging/refine/picture_fit.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::refine_test {
 namespace {
 
 constexpr double kRing = 3;
@@ -156,4 +156,4 @@ TEST(Refine, MovedIsCeres) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::refine_test

@@ -13,7 +13,7 @@
 #include "sim/scene/make_plan.hpp"
 #include "tests/support/dense_bed.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::batcher_test {
 namespace {
 
 constexpr std::size_t kBeds = 50;
@@ -45,7 +45,7 @@ struct Bed {
   System system;
 };
 /// Beds that differ in their velocities. \param laws of bed k
-std::vector<Bed> some_beds(const std::function<Laws(std::size_t k)>& laws) {
+std::vector<Bed> some_beds(const std::function<LawWords(std::size_t k)>& laws) {
   std::vector<Bed> beds;
   for (std::size_t k = 0; k < kBeds; ++k) {
     const Scene scene =
@@ -57,7 +57,7 @@ std::vector<Bed> some_beds(const std::function<Laws(std::size_t k)>& laws) {
   }
   return beds;
 }
-Laws springs(std::size_t /*k*/) {
+LawWords springs(std::size_t /*k*/) {
   return {"linear", "spring", "none"};
 }
 
@@ -106,9 +106,9 @@ TEST(Batcher, BedsThatArriveDuringALaunchShareTheNext) {
 TEST(Batcher, BedsOfSeveralLawsRunTogether) {
   Batcher batcher(make_host_executor());
   std::vector<Bed> beds = some_beds([](std::size_t k) {
-    return k % 3 == 0   ? Laws{"hertz", "mindlin", "none"}
-           : k % 3 == 1 ? Laws{"linear", "dashpot", "none"}
-                        : Laws{"linear", "spring", "none"};
+    return k % 3 == 0   ? LawWords{"hertz", "mindlin", "none"}
+           : k % 3 == 1 ? LawWords{"linear", "dashpot", "none"}
+                        : LawWords{"linear", "spring", "none"};
   });
   const std::vector<Bed> starts = beds;
   for (const std::string& failure : together(beds, batcher)) EXPECT_EQ(failure, "");
@@ -148,7 +148,7 @@ TEST(Batcher, AnErrorOfTheMachineReachesEveryBed) {
 
 TEST(DeviceSolver, WhatHasNoKernelIsRefusedByName) {
   Batcher batcher(make_host_executor());
-  const auto refusal = [&](const Laws& laws) -> std::string {
+  const auto refusal = [&](const LawWords& laws) -> std::string {
     const Scene scene =
         scene_of({.dimension = 2, .integrator = "split", .unequal = false, .periodic = false}, laws);
     try {
@@ -167,4 +167,4 @@ TEST(DeviceSolver, WhatHasNoKernelIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::batcher_test

@@ -14,7 +14,7 @@
 #include "sim/scene/make_plan.hpp"
 #include "tests/support/dense_bed.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::block_of_threads_test {
 namespace {
 
 constexpr std::int32_t kThreads = 3;  // no divisor of the number of beads
@@ -113,4 +113,4 @@ TEST(BlockOfThreads, HasTheBitsOfTheOracle) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::block_of_threads_test

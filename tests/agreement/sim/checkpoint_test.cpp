@@ -12,7 +12,7 @@
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::checkpoint_test {
 namespace {
 
 template <class Row>
@@ -191,4 +191,4 @@ TEST(Checkpoint, EveryLawGoesOnToTheBit) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::checkpoint_test

@@ -12,7 +12,7 @@
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/dense_bed.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::device_test {
 namespace {
 
 constexpr GuardLimits kLimits{.overlap = 0.3, .travel_per_step = 1};
@@ -49,7 +49,7 @@ class Device : public testing::TestWithParam<Case> {
   template <class Check>
   void for_each_law(std::int64_t steps, Check check) {
     int compared = 0;
-    for (const Laws& laws : all_laws()) {
+    for (const LawWords& laws : all_laws()) {
       const Scene scene = scene_of(GetParam(), laws);
       const Plan plan = make_plan(scene);
       if (!find_device_kernel(plan.key)) continue;
@@ -183,7 +183,7 @@ TEST(GraphicsCard, HasTheBitsOfTheOracle) {
   }
   constexpr std::int64_t kSteps = 700;
   for (const Case& c : all_cases())
-    for (const Laws& laws : all_laws()) {
+    for (const LawWords& laws : all_laws()) {
       const Scene scene = scene_of(c, laws);
       const Plan plan = make_plan(scene);
       if (!find_device_kernel(plan.key)) continue;
@@ -199,4 +199,4 @@ TEST(GraphicsCard, HasTheBitsOfTheOracle) {
 INSTANTIATE_TEST_SUITE_P(All, Device, testing::ValuesIn(all_cases()), name_of_case);
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::device_test

@@ -20,7 +20,7 @@
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::event_driven_test {
 namespace {
 
 Scene scene_of(const std::string& text) {
@@ -555,4 +555,4 @@ TEST(EventDriven, IsRefusedWhereNotExact) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::event_driven_test

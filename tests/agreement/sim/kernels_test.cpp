@@ -12,7 +12,7 @@
 #include "sim/scene/make_plan.hpp"
 #include "tests/support/dense_bed.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::kernels_test {
 namespace {
 
 struct Habits {
@@ -35,7 +35,7 @@ class Kernels : public testing::TestWithParam<Case> {
   /// the scalar solver.
   template <class Check>
   void for_each_law(std::int64_t steps, Check check) {
-    for (const Laws& laws : all_laws()) {
+    for (const LawWords& laws : all_laws()) {
       const Scene scene = scene_of(GetParam(), laws);
       const Plan plan = make_plan(scene);
       const System start = bed_of(scene, plan);
@@ -110,4 +110,4 @@ TEST_P(Kernels, ThreadCountDoesNotChangeBits) {
 INSTANTIATE_TEST_SUITE_P(All, Kernels, testing::ValuesIn(all_cases()), name_of_case);
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::kernels_test

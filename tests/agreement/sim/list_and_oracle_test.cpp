@@ -15,7 +15,7 @@
 #include "sim/stepping/list_solver.hpp"
 #include "tests/support/collision.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::list_and_oracle_test {
 namespace {
 
 bool same_bits(const System& a, const System& b) {
@@ -176,4 +176,4 @@ TEST(ListSolver, HistoryCrossesThePeriodicBoundary) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::list_and_oracle_test

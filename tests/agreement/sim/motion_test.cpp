@@ -17,7 +17,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::motion_test {
 namespace {
 
 constexpr int kFrom = 41;  // cycle 2, phase 1: the bed rests on the plate and takes off later
@@ -310,4 +310,4 @@ TEST(DrivePhase, TheDriveBeginsThere) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::motion_test

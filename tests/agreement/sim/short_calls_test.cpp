@@ -12,7 +12,7 @@
 #include "sim/scene/scene.hpp"
 #include "sim/start/start.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::short_calls_test {
 namespace {
 
 const std::string kPaperOne =
@@ -112,4 +112,4 @@ TEST(ShortCalls, EndTheListsWhereTheCallerChangesSomething) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::short_calls_test

@@ -7,8 +7,9 @@
 #include "analysis/observable/observable.hpp"
 #include "analysis/observable/results.hpp"
 
-using namespace twincell;
-using namespace twincell::analysis;
+namespace twincell::long_trajectory_test {
+
+using namespace analysis;
 
 namespace {
 
@@ -67,3 +68,5 @@ TEST(LongTrajectory, MemoryGrowsByThePerCycleSeriesOnly) {
             << " KiB; the frames themselves " << frames / 1048576 << " MiB\n";
   EXPECT_LT(grown, 380 * per_cycle + 16384);
 }
+
+}  // namespace twincell::long_trajectory_test

@@ -7,8 +7,9 @@
 #include "analysis/observable/results.hpp"
 #include "tests/support/rigid_bed.hpp"
 
-using namespace twincell;
-using namespace twincell::analysis;
+namespace twincell::missing_beads_test {
+
+using namespace analysis;
 
 namespace {
 
@@ -144,3 +145,5 @@ TEST(BadQuestions, AreRefusedWithASentence) {
   EXPECT_THROW(analyze(bed, cutoff), ConfigError);
   EXPECT_THROW(analyze(MemoryTrajectory(bed.info())), InputError);
 }
+
+}  // namespace twincell::missing_beads_test

@@ -16,7 +16,7 @@
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::calibration {
+namespace twincell::calibration::tables_test {
 namespace {
 
 /// Reads a table of two columns with one of the readers and returns the numbers of the second row.
@@ -198,4 +198,4 @@ TEST(Tables, TruthHasWholeFramesAndRadii) {
 }
 
 }  // namespace
-}  // namespace twincell::calibration
+}  // namespace twincell::calibration::tables_test

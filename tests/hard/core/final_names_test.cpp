@@ -8,7 +8,7 @@
 #include "core/atomic_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell {
+namespace twincell::final_names_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -42,4 +42,4 @@ TEST(FinalNames, OfFinishedOutputsAreForgotten) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::final_names_test

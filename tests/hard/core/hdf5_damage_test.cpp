@@ -18,7 +18,7 @@
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell {
+namespace twincell::hdf5_damage_test {
 namespace {
 
 /// The bytes of a file with one dataset of frames, stored in chunks, in a group. HDF5 writes it in its oldest
@@ -138,4 +138,4 @@ TEST(Hdf5Damage, FilesAreOpenedWhileAnotherThreadIsInTheLibrary) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::hdf5_damage_test

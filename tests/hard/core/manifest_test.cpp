@@ -14,7 +14,7 @@
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell {
+namespace twincell::manifest_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -59,4 +59,4 @@ TEST(Manifest, ChangedFileIsDetectedDespiteEqualSizeAndTime) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::manifest_test

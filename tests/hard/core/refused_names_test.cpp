@@ -19,7 +19,7 @@
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell {
+namespace twincell::refused_names_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -95,4 +95,4 @@ TEST(RefusedNames, AFileOfAnotherUserInAStickyFolder) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::refused_names_test

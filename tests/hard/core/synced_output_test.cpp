@@ -19,6 +19,8 @@
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
+namespace twincell::synced_output_test {
+
 namespace {
 
 struct Sync {
@@ -114,3 +116,5 @@ TEST_F(SyncedOutput, AFileThatTheDiskRefusesLeavesTheOldOutput) {
 
 }  // namespace
 }  // namespace twincell
+
+}  // namespace twincell::synced_output_test

@@ -9,10 +9,12 @@
 
 #include "imaging/stack/open_frames.hpp"
 #include "tests/support/frames.hpp"
+#include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::camera_files_test {
+
+using namespace imaging;
 
 namespace fs = std::filesystem;
 
@@ -48,10 +50,10 @@ void expect_values(const fs::path& stack, int width, int height, int frames, int
 
 /// Expects every truncated copy of the file to be refused in one line that names it.
 void expect_truncation_is_found(const fs::path& file, const std::string& whole) {
-  put(file, whole);
+  put_file(file, whole);
   ASSERT_EQ(refusal(file), "");
   for (std::size_t n = 0; n < whole.size(); n += n < 200 || n + 200 > whole.size() ? 1 : 13) {
-    put(file, whole.substr(0, n));
+    put_file(file, whole.substr(0, n));
     const std::string sentence = refusal(file);
     EXPECT_NE(sentence.find(file.filename().string()), std::string::npos)
         << n << " of " << whole.size() << " bytes";
@@ -136,9 +138,9 @@ TEST(CameraFiles, ColourBecomesGrey) {
   const PixelValue colour = [](int, int y, int) {
     return y == 0 ? 200U << 16 | 100U << 8 | 50U : 10U << 16 | 20U << 8 | 30U;
   };
-  put(folder / "a.cine", cine_file({.container = 24, .real_bits = 8}, colour));
-  put(folder / "a.seq", seq_file({.bits = 24, .format = 200}, colour));
-  put(folder / "a.mrf", mrf_file(6, 4, 3, 24, colour));
+  put_file(folder / "a.cine", cine_file({.container = 24, .real_bits = 8}, colour));
+  put_file(folder / "a.seq", seq_file({.bits = 24, .format = 200}, colour));
+  put_file(folder / "a.mrf", mrf_file(6, 4, 3, 24, colour));
   for (const char* name : {"a.cine", "a.seq", "a.mrf"}) {
     const auto frames = read_all(folder / name);
     ASSERT_EQ(frames.size(), 3U) << name;
@@ -155,7 +157,7 @@ TEST(Cine, EveryDepth) {
   const TemporaryFolder folder;
   const fs::path file = folder / "a.cine";
   for (const auto& [container, bits] : {std::pair{8, 8}, {16, 8}, {16, 10}, {16, 12}, {16, 14}, {16, 16}}) {
-    put(file, cine_file({.container = container, .real_bits = bits}, values(bits)));
+    put_file(file, cine_file({.container = container, .real_bits = bits}, values(bits)));
     if (container == 16 && bits == 8) {  // the container sets the type, the header field sets the depth
       EXPECT_EQ(open_frames(file)->info().bits, 8);
       EXPECT_EQ(read_all(file).at(0).type(), CV_16UC1);
@@ -166,8 +168,8 @@ TEST(Cine, EveryDepth) {
   // 3 x 3 pixels of 12 bits end in the middle of a byte.
   for (const unsigned packing : {256U, 1024U})
     for (const auto& [width, height] : {std::pair{8, 4}, {3, 3}}) {
-      put(file,
-          cine_file({.width = width, .height = height, .container = 12, .packing = packing}, values(12)));
+      put_file(file, cine_file({.width = width, .height = height, .container = 12, .packing = packing},
+                               values(12)));
       expect_values(file, width, height, 3, 12);
     }
 }
@@ -178,9 +180,9 @@ TEST(Cine, Packed10BitIsMadeLinear) {
   const TemporaryFolder folder;
   const std::vector<std::pair<unsigned, int>> table = {{64, 64},    {128, 125},  {256, 290},   {512, 998},
                                                        {800, 2468}, {960, 3620}, {1014, 4064}, {1023, 4095}};
-  put(folder / "a.cine",
-      cine_file({.width = 8, .height = 1, .frames = 1, .container = 10, .packing = 256},
-                [&](int x, int, int) { return table[static_cast<std::size_t>(x)].first; }));
+  put_file(folder / "a.cine",
+           cine_file({.width = 8, .height = 1, .frames = 1, .container = 10, .packing = 256},
+                     [&](int x, int, int) { return table[static_cast<std::size_t>(x)].first; }));
   const auto source = open_frames(folder / "a.cine");
   EXPECT_EQ(source->info().bits, 12);
   ASSERT_EQ(source->info().notes.size(), 1U);
@@ -197,17 +199,17 @@ TEST(Cine, TopIsUpHoweverTheRowsLie) {
   for (const bool flip_v : {false, true})
     for (const bool flip_h : {false, true})
       for (const bool top_down : {false, true}) {
-        put(file, cine_file({.flip_v = flip_v, .flip_h = flip_h, .top_down = top_down}, values(12)));
+        put_file(file, cine_file({.flip_v = flip_v, .flip_h = flip_h, .top_down = top_down}, values(12)));
         expect_values(file, 6, 4, 3, 12);
-        put(file,
-            cine_file({.container = 12, .packing = 1024, .flip_v = flip_v, .flip_h = flip_h}, values(12)));
+        put_file(file, cine_file({.container = 12, .packing = 1024, .flip_v = flip_v, .flip_h = flip_h},
+                                 values(12)));
         expect_values(file, 6, 4, 3, 12);
       }
 }
 
 TEST(Cine, TimesRateAndNumbers) {
   const TemporaryFolder folder;
-  put(folder / "a.cine", cine_file({.frames = 5, .first_image = -2, .rate = 1000}, values(12)));
+  put_file(folder / "a.cine", cine_file({.frames = 5, .first_image = -2, .rate = 1000}, values(12)));
   const auto source = open_frames(folder / "a.cine");
   const StackInfo info = source->info();
   EXPECT_EQ(info.frame_rate_hz, 1000);
@@ -226,7 +228,7 @@ TEST(Cine, TimesRateAndNumbers) {
                 1e-9);  // stamps count 2^-32 s, the two lowest bits are flags
     expect_words(source->current(), {"a.cine", fmt::format("frame {} (image {})", i, i - 2)});
   }
-  put(folder / "b.cine", cine_file({.times = false}, values(12)));
+  put_file(folder / "b.cine", cine_file({.times = false}, values(12)));
   const auto untimed = open_frames(folder / "b.cine");
   ASSERT_TRUE(untimed->next(frame));
   EXPECT_FALSE(untimed->time_s());
@@ -236,9 +238,9 @@ TEST(Cine, TimesRateAndNumbers) {
 TEST(Cine, OldFiles) {
   const TemporaryFolder folder;
   // 32-bit offsets; a set-up that ends before the fields of newer cameras.
-  put(folder / "a.cine", cine_file({.version = 0}, values(12)));
+  put_file(folder / "a.cine", cine_file({.version = 0}, values(12)));
   expect_values(folder / "a.cine", 6, 4, 3, 12);
-  put(folder / "b.cine", cine_file({.real_bits = 16, .setup_bytes = 300}, values(16)));
+  put_file(folder / "b.cine", cine_file({.real_bits = 16, .setup_bytes = 300}, values(16)));
   expect_values(folder / "b.cine", 6, 4, 3, 16);
   EXPECT_EQ(open_frames(folder / "b.cine")->info().frame_rate_hz, 1000);
 }
@@ -251,7 +253,7 @@ TEST(Cine, Spoilt) {
   const auto changed = [&](std::size_t at, std::uint64_t value, std::size_t n) {
     std::string bytes = whole;
     for (std::size_t i = 0; i < n; ++i) bytes[at + i] = static_cast<char>(value >> (8 * i));
-    put(file, bytes);
+    put_file(file, bytes);
     return refusal(file);
   };
   expect_words(changed(4, 1, 2), {"a.cine", "JPEG"});
@@ -274,10 +276,10 @@ TEST(Seq, EveryDepthAndVersion) {
   const TemporaryFolder folder;
   const fs::path file = folder / "a.seq";
   for (const int version : {3, 5}) {
-    put(file, seq_file({.version = version}, values(8)));
+    put_file(file, seq_file({.version = version}, values(8)));
     expect_values(file, 6, 4, 3, 8);
     for (const int bits : {10, 12, 16}) {
-      put(file, seq_file({.bits = 16, .real_bits = bits, .version = version}, values(bits)));
+      put_file(file, seq_file({.bits = 16, .real_bits = bits, .version = version}, values(bits)));
       expect_values(file, 6, 4, 3, bits);
     }
   }
@@ -286,7 +288,7 @@ TEST(Seq, EveryDepthAndVersion) {
 TEST(Seq, TimesAndRate) {
   const TemporaryFolder folder;
   for (const int version : {3, 5}) {
-    put(folder / "a.seq", seq_file({.frames = 4, .version = version}, values(8)));
+    put_file(folder / "a.seq", seq_file({.frames = 4, .version = version}, values(8)));
     const auto source = open_frames(folder / "a.seq");
     const double step = version >= 5 ? 0.0025 : 0.003;
     EXPECT_EQ(source->info().frame_rate_hz, 400);
@@ -303,7 +305,7 @@ TEST(Seq, TimesAndRate) {
 
 TEST(Seq, ARecordingThatWasNeverClosed) {
   const TemporaryFolder folder;
-  put(folder / "a.seq", seq_file({.frames = 5, .counted = false}, values(8)));
+  put_file(folder / "a.seq", seq_file({.frames = 5, .counted = false}, values(8)));
   EXPECT_EQ(read_all(folder / "a.seq").size(), 5U);
   ASSERT_EQ(open_frames(folder / "a.seq")->info().notes.size(), 1U);
   expect_words(open_frames(folder / "a.seq")->info().notes[0], {"counts no frames", "room for 5"});
@@ -317,15 +319,15 @@ TEST(Seq, Spoilt) {
     const std::string whole = seq_file({}, values(8));
     return whole.substr(0, whole.size() - 16);
   }());
-  put(file, seq_file({.compression = 1}, values(8)));
+  put_file(file, seq_file({.compression = 1}, values(8)));
   expect_words(refusal(file), {"a.seq", "compressed"});
-  put(file, seq_file({.format = 102}, values(8)));
+  put_file(file, seq_file({.format = 102}, values(8)));
   expect_words(refusal(file), {"format 102 with 8 bits"});
   std::string bytes = seq_file({}, values(8));
   bytes[580] = 10;
-  put(file, bytes);
+  put_file(file, bytes);
   expect_words(refusal(file), {"10 bytes apart"});
-  put(file, seq_file({.frames = 0, .counted = false}, values(8)));
+  put_file(file, seq_file({.frames = 0, .counted = false}, values(8)));
   expect_words(refusal(file), {"no frames"});
 }
 
@@ -334,7 +336,7 @@ TEST(Seq, Spoilt) {
 TEST(Mrf, EveryDepth) {
   const TemporaryFolder folder;
   for (const int bits : {8, 10, 12, 16}) {
-    put(folder / "a.mrf", mrf_file(6, 4, 3, bits, values(bits)));
+    put_file(folder / "a.mrf", mrf_file(6, 4, 3, bits, values(bits)));
     expect_values(folder / "a.mrf", 6, 4, 3, bits);
   }
 }
@@ -343,9 +345,9 @@ TEST(Mrf, Spoilt) {
   const TemporaryFolder folder;
   const fs::path file = folder / "a.mrf";
   expect_truncation_is_found(file, mrf_file(6, 4, 3, 10, values(10)));
-  put(file, mrf_file(6, 4, 0, 10, values(10)));
+  put_file(file, mrf_file(6, 4, 0, 10, values(10)));
   expect_words(refusal(file), {"a.mrf", "no frames"});
-  put(file, mrf_file(6, 4, 1, 32, values(8)));
+  put_file(file, mrf_file(6, 4, 1, 32, values(8)));
   expect_words(refusal(file), {"32 bits"});
 }
 
@@ -354,27 +356,29 @@ TEST(Mrf, Spoilt) {
 TEST(Mraw, EveryDepth) {
   const TemporaryFolder folder;
   for (const auto& [stored, bits] : {std::pair{8, 8}, {10, 10}, {12, 12}, {16, 10}, {16, 12}, {16, 16}}) {
-    put(folder / "a.mraw", planes(8, 4, 3, stored, values(bits)));
-    put(folder / "a.cih", cih_text(8, 4, 3, stored, bits));
+    put_file(folder / "a.mraw", planes(8, 4, 3, stored, values(bits)));
+    put_file(folder / "a.cih", cih_text(8, 4, 3, stored, bits));
     expect_values(folder / "a.mraw", 8, 4, 3, bits);
     expect_values(folder / "a.cih", 8, 4, 3, bits);
-    put(folder / "b.mraw", planes(8, 4, 3, stored, values(bits)));
-    put(folder / "b.cihx", cihx_text(8, 4, 3, stored, bits));
+    put_file(folder / "b.mraw", planes(8, 4, 3, stored, values(bits)));
+    put_file(folder / "b.cihx", cihx_text(8, 4, 3, stored, bits));
     expect_values(folder / "b.mraw", 8, 4, 3, bits);
     expect_values(folder / "b.cihx", 8, 4, 3, bits);
   }
   // Twelve bits in the upper bits of sixteen.
-  put(folder / "c.mraw", planes(8, 4, 3, 16, [](int x, int y, int f) { return values(12)(x, y, f) << 4; }));
-  put(folder / "c.CIH", cih_text(8, 4, 3, 16, 12, "Higher"));
+  put_file(folder / "c.mraw",
+           planes(8, 4, 3, 16, [](int x, int y, int f) { return values(12)(x, y, f) << 4; }));
+  put_file(folder / "c.CIH", cih_text(8, 4, 3, 16, 12, "Higher"));
   expect_values(folder / "c.mraw", 8, 4, 3, 12);
 }
 
 TEST(Mraw, RateExposureNumber) {
   const TemporaryFolder folder;
-  put(folder / "a.mraw", planes(8, 4, 3, 16, values(12)));
+  put_file(folder / "a.mraw", planes(8, 4, 3, 16, values(12)));
   for (const bool xml : {false, true}) {
     fs::remove(folder / "a.cih");
-    put(folder / (xml ? "a.cihx" : "a.cih"), xml ? cihx_text(8, 4, 3, 16, 12) : cih_text(8, 4, 3, 16, 12));
+    put_file(folder / (xml ? "a.cihx" : "a.cih"),
+             xml ? cihx_text(8, 4, 3, 16, 12) : cih_text(8, 4, 3, 16, 12));
     const StackInfo info = open_frames(folder / "a.mraw")->info();
     EXPECT_EQ(info.frame_rate_hz, 2000);
     EXPECT_EQ(info.exposure_s, 0.00025);
@@ -386,15 +390,15 @@ TEST(Mraw, Spoilt) {
   const TemporaryFolder folder;
   const fs::path file = folder / "a.mraw";
   const std::string whole = planes(8, 4, 3, 12, values(12));
-  put(file, whole);
+  put_file(file, whole);
   expect_words(refusal(file), {"a.mraw", "lacks the file a.cih or .cihx"});
-  put(folder / "lone.cih", cih_text(8, 4, 3, 12, 12));
+  put_file(folder / "lone.cih", cih_text(8, 4, 3, 12, 12));
   expect_words(refusal(folder / "lone.cih"), {"lone.cih", "lacks the file lone.mraw"});
-  put(folder / "a.cih", cih_text(8, 4, 3, 12, 12));
+  put_file(folder / "a.cih", cih_text(8, 4, 3, 12, 12));
   expect_truncation_is_found(file, whole);
   const auto with = [&](const std::string& text) {
-    put(file, whole);
-    put(folder / "a.cih", text);
+    put_file(file, whole);
+    put_file(folder / "a.cih", text);
     return refusal(file);
   };
   const std::string text = cih_text(8, 4, 3, 12, 12);
@@ -418,3 +422,5 @@ TEST(Mraw, Spoilt) {
     }
   }
 }
+
+}  // namespace twincell::camera_files_test

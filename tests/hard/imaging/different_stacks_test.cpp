@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "tests/support/frames.hpp"
+#include "tests/support/pictures.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::different_stacks_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -20,7 +21,7 @@ void film(const fs::path& folder, int seed, int frames, int later = 0) {
     cv::RNG random(static_cast<std::uint64_t>(f < later ? 1 + f : 1000 * seed + f + 1));
     cv::Mat1b picture(12, 16);
     random.fill(picture, cv::RNG::UNIFORM, 0, 255);
-    write(folder / ("f" + std::to_string(f) + ".png"), picture);
+    write_picture(folder / ("f" + std::to_string(f) + ".png"), picture);
   }
 }
 
@@ -64,4 +65,4 @@ TEST(DifferentStacks, AMissingStackIsFoundAtOnce) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::different_stacks_test

@@ -7,12 +7,15 @@
 
 #include "core/hdf5.hpp"
 #include "imaging/stack/open_frames.hpp"
+#include "tests/support/file_bytes.hpp"
 #include "tests/support/frames.hpp"
 #include "tests/support/hdf5_elsewhere.hpp"
+#include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::hdf5_stack_test {
+
+using namespace imaging;
 
 namespace {
 
@@ -137,15 +140,15 @@ TEST(Hdf5Stack, Spoilt) {
     const h5::Handle file = new_file(path);
     add_dataset(file.get(), "/a", H5T_STD_U16LE, {4, 50, 60}, {1, 50, 60});
   }
-  const std::string whole = contents(path);
+  const std::string whole = bytes_of(path);
   ASSERT_EQ(refusal(path), "");
   for (std::size_t n = 8; n < whole.size(); n += 97) {
-    put(path, whole.substr(0, n));
+    put_file(path, whole.substr(0, n));
     const std::string sentence = refusal(path);
     EXPECT_NE(sentence.find("a.h5"), std::string::npos) << n << " of " << whole.size() << " bytes";
     EXPECT_EQ(std::count(sentence.begin(), sentence.end(), '\n'), 0) << sentence;
   }
-  put(path, "no HDF5");
+  put_file(path, "no HDF5");
   expect_words(refusal(path + ":/a"), {"a.h5"});
 }
 
@@ -165,7 +168,7 @@ TEST(Hdf5Stack, LargeCompressedDatasetsAreReadOrRefused) {
     h5::check(H5Dwrite(dataset.get(), H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, zeros.data()), "a");
   };
   blank({1, 16384, 16384}, {1, 16384, 16384});
-  ASSERT_GT(contents(path).size(), 200'000U);
+  ASSERT_GT(bytes_of(path).size(), 200'000U);
   expect_words(refusal(path), {"a.h5", "16384 x 16384", "cannot hold"});
   // The stored bytes of another dataset must not count for this one.
   {
@@ -274,3 +277,5 @@ TEST(Hdf5Stack, DataInOtherFilesIsNotRead) {
     }
   }
 }
+
+}  // namespace twincell::hdf5_stack_test

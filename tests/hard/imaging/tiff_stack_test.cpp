@@ -10,11 +10,14 @@
 #include "imaging/stack/open_frames.hpp"
 #include "tests/support/camera_files.hpp"
 #include "tests/support/frames.hpp"
+#include "tests/support/pictures.hpp"
+#include "tests/support/put_file.hpp"
 #include "tests/support/sanitized.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::tiff_stack_test {
+
+using namespace imaging;
 
 namespace fs = std::filesystem;
 
@@ -62,8 +65,9 @@ TEST(TiffStack, EveryOrderAndDepth) {
     for (const bool big_tiff : {false, true})
       for (const int bits : {8, 10, 12, 14, 16})
         for (const int width : {32, 13}) {  // 13 pixels of 10, 12 or 14 bits end in the middle of a byte
-          put(file, tiff_file({.width = width, .bits = bits, .big_first = big_first, .big_tiff = big_tiff},
-                              values(bits)));
+          put_file(file,
+                   tiff_file({.width = width, .bits = bits, .big_first = big_first, .big_tiff = big_tiff},
+                             values(bits)));
           SCOPED_TRACE(
               fmt::format("{} bits, width {}, big-endian {}, BigTIFF {}", bits, width, big_first, big_tiff));
           expect_stack(file, width, 20, 3, bits, values(bits));
@@ -73,7 +77,7 @@ TEST(TiffStack, EveryOrderAndDepth) {
 
 TEST(TiffStack, TwelveBitsInSixteen) {
   const TemporaryFolder folder;
-  put(folder / "a.tif", tiff_file({.max_sample = 4095}, values(12)));
+  put_file(folder / "a.tif", tiff_file({.max_sample = 4095}, values(12)));
   expect_stack(folder / "a.tif", 32, 20, 3, 16, values(12));
   EXPECT_EQ(open_frames(folder / "a.tif")->info().bits, 12);
 }
@@ -81,7 +85,7 @@ TEST(TiffStack, TwelveBitsInSixteen) {
 TEST(TiffStack, ZeroIsWhite) {
   const TemporaryFolder folder;
   for (const int bits : {8, 12, 16}) {
-    put(folder / "a.tif", tiff_file({.bits = bits, .photometric = 0}, values(bits)));
+    put_file(folder / "a.tif", tiff_file({.bits = bits, .photometric = 0}, values(bits)));
     expect_stack(folder / "a.tif", 32, 20, 3, bits,
                  [&](int x, int y, int f) { return ((1U << bits) - 1) - values(bits)(x, y, f); });
     ASSERT_EQ(open_frames(folder / "a.tif")->info().notes.size(), 1U);
@@ -177,9 +181,9 @@ TEST(TiffStack, CompressedTiledRealColour) {
     }
   cv::Mat1f real(5, 4);
   for (int i = 0; i < 20; ++i) real(i / 4, i % 4) = 0.25F * static_cast<float>(i) - 1;
-  write(file, real);
+  write_picture(file, real);
   EXPECT_TRUE(equal(read_all(file).at(0), real));
-  write(file, cv::Mat(6, 5, CV_16UC3, cv::Scalar(20000, 10000, 5000)));  // B, G, R
+  write_picture(file, cv::Mat(6, 5, CV_16UC3, cv::Scalar(20000, 10000, 5000)));  // B, G, R
   const cv::Mat grey = read_all(file).at(0);
   ASSERT_EQ(grey.type(), CV_16UC1);
   EXPECT_NEAR(grey.at<ushort>(3, 3), 0.299 * 5000 + 0.587 * 10000 + 0.114 * 20000, 2);
@@ -214,7 +218,8 @@ TEST(TiffStack, AnImageJStackOnOnePage) {
   const std::string words = "ImageJ=1.53t\nimages=5\nslices=5\nfinterval=0.002\nloop=false\n";
   for (const bool big_first : {false, true})
     for (const int bits : {8, 16}) {
-      put(file,
+      put_file(
+          file,
           tiff_file(
               {.pages = 5, .bits = bits, .big_first = big_first, .description = words, .pages_written = 1},
               values(bits)));
@@ -222,19 +227,20 @@ TEST(TiffStack, AnImageJStackOnOnePage) {
       EXPECT_EQ(open_frames(file)->info().frame_rate_hz, 500);
     }
   // "fps" is the speed at which ImageJ plays the stack; "finterval" is the camera's.
-  put(file, tiff_file({.pages = 5, .description = "ImageJ=1.53t\nimages=5\nfps=7\n"}, values(16)));
+  put_file(file, tiff_file({.pages = 5, .description = "ImageJ=1.53t\nimages=5\nfps=7\n"}, values(16)));
   EXPECT_EQ(open_frames(file)->info().frame_rate_hz, 7);
   EXPECT_TRUE(open_frames(file)->info().playback);
-  put(file, tiff_file({.pages = 5, .description = "ImageJ=1.53t\nfps=7\nfinterval=0.002\n"}, values(16)));
+  put_file(file,
+           tiff_file({.pages = 5, .description = "ImageJ=1.53t\nfps=7\nfinterval=0.002\n"}, values(16)));
   EXPECT_EQ(open_frames(file)->info().frame_rate_hz, 500);
   EXPECT_FALSE(open_frames(file)->info().playback);
   // An ordinary stack with ImageJ's description is read page by page.
-  put(file, tiff_file({.pages = 5, .description = words}, values(16)));
+  put_file(file, tiff_file({.pages = 5, .description = words}, values(16)));
   expect_stack(file, 32, 20, 5, 16, values(16));
   // Planes that the description claims but the file lacks.
-  put(file, tiff_file({.pages = 4, .description = words, .pages_written = 1}, values(16)));
+  put_file(file, tiff_file({.pages = 4, .description = words, .pages_written = 1}, values(16)));
   expect_words(refusal(file), {"a.tif", "truncated", "plane 5 of 5"});
-  put(file, tiff_file({.pages = 1, .description = "ImageJ=1.53t\nimages=1e30\n"}, values(16)));
+  put_file(file, tiff_file({.pages = 1, .description = "ImageJ=1.53t\nimages=1e30\n"}, values(16)));
   expect_words(refusal(file), {"1e+30 planes"});
 }
 
@@ -255,7 +261,7 @@ TEST(TiffStack, AboveFourGigabytesAndInLittleMemory) {
                                       .only_head = true},
                                      values(16));
   const std::uint64_t first = head.size() - plane_bytes;
-  put(file, head);
+  put_file(file, head);
   fs::resize_file(file, first + plane_bytes * frames);
   ASSERT_GT(fs::file_size(file), std::uint64_t{1} << 32);
   {
@@ -283,7 +289,7 @@ TEST(TiffStack, PagesInLittleMemory) {
   const TemporaryFolder folder;
   const fs::path file = folder / "pages.tif";
   constexpr int frames = 400;
-  put(file, tiff_file({.width = 512, .height = 256, .pages = frames}, values(16)));
+  put_file(file, tiff_file({.width = 512, .height = 256, .pages = frames}, values(16)));
   const auto source = open_frames(file);
   cv::Mat frame;
   for (int i = 0; i < 40; ++i) ASSERT_TRUE(source->next(frame));
@@ -302,7 +308,7 @@ TEST(TiffStack, Spoilt) {
     const std::string whole =
         tiff_file({.width = 13, .height = 5, .bits = 12, .big_tiff = big_tiff}, values(12));
     for (std::size_t n = 1; n < whole.size(); ++n) {
-      put(file, whole.substr(0, n));
+      put_file(file, whole.substr(0, n));
       const std::string sentence = refusal(file);
       ASSERT_NE(sentence.find("a.tif"), std::string::npos) << n << " of " << whole.size() << " bytes";
       EXPECT_EQ(std::count(sentence.begin(), sentence.end(), '\n'), 0) << sentence;
@@ -313,7 +319,7 @@ TEST(TiffStack, Spoilt) {
   const std::size_t link = 8 + 2 + 9 * 12;
   ASSERT_EQ(round.substr(link, 4), std::string(4, '\0'));
   round[link] = 8;
-  put(file, round);
+  put_file(file, round);
   expect_words(refusal(file), {"a.tif", "no end"});
   // Pages of different sizes.
   std::string mixed = tiff_file({.pages = 2}, values(16));
@@ -321,7 +327,7 @@ TEST(TiffStack, Spoilt) {
       mixed.rfind(std::string("\x01\x01\x04\x00\x01\x00\x00\x00\x14", 9));  // height 20
   ASSERT_NE(second, std::string::npos);
   mixed[second + 8] = 10;
-  put(file, mixed);
+  put_file(file, mixed);
   expect_words(refusal(file), {"page 2: is 32 x 10", "page 1 is 32 x 20"});
   // More rows than there are pixels for, in one strip and in strips without a location.
   std::string tall = tiff_file({.pages = 1}, values(16));
@@ -329,14 +335,16 @@ TEST(TiffStack, Spoilt) {
   ASSERT_EQ(tall.substr(rows, 2), "\x01\x01");
   ASSERT_EQ(tall.substr(rows_per_strip, 2), "\x16\x01");
   tall[rows + 8] = tall[rows_per_strip + 8] = 21;
-  put(file, tall);
+  put_file(file, tall);
   expect_words(refusal(file), {"1280 bytes of pixels, of the 1344"});
   tall[rows_per_strip + 8] = 7;
-  put(file, tall);
+  put_file(file, tall);
   expect_words(refusal(file), {"3 pieces, of which 1"});
   // Unreasonable image dimensions.
   std::string huge = tiff_file({.pages = 1}, values(16));
   huge[8 + 2 + 8 + 3] = 0x70;
-  put(file, huge);
+  put_file(file, huge);
   expect_words(refusal(file), {"a.tif", "1879048224 x 20"});
 }
+
+}  // namespace twincell::tiff_stack_test

@@ -7,16 +7,19 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <opencv2/videoio.hpp>
 #include <random>
 
+#include "imaging/codecs/codecs.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "tests/support/camera_files.hpp"
+#include "tests/support/file_bytes.hpp"
 #include "tests/support/frames.hpp"
+#include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::video_test {
+
+using namespace imaging;
 
 namespace {
 
@@ -39,12 +42,12 @@ PixelValue values(int bits) {
 }
 
 void write_film(const std::string& file, int frames) {
-  cv::VideoWriter writer(file, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 25, cv::Size(64, 48), true);
-  ASSERT_TRUE(writer.isOpened());
+  const auto writer = imaging::codecs().create_film(file, "MJPG", 25, cv::Size(64, 48));
+  ASSERT_NE(writer, nullptr);
   for (int i = 0; i < frames; ++i) {
     cv::Mat picture(48, 64, CV_8UC3, cv::Scalar::all(30 * i));
     picture(cv::Rect(0, 0, 16, 16)).setTo(cv::Scalar(0, 0, 200));  // coloured, so that the video is not grey
-    writer.write(picture);
+    writer->write(picture);
   }
 }
 
@@ -75,7 +78,7 @@ TEST(Video, GreyAndDeepOnesThroughFfmpegAreExact) {
        {std::pair{8, "gray"}, {10, "gray10le"}, {12, "gray12le"}, {16, "gray16le"}}) {
     SCOPED_TRACE(pixels);
     const std::string raw = folder / "raw", video = folder / fmt::format("v{}.mkv", bits);
-    put(raw, planes(64, 48, 5, bits == 8 ? 8 : 16, values(bits)));
+    put_file(raw, planes(64, 48, 5, bits == 8 ? 8 : 16, values(bits)));
     encode(raw, pixels, 64, 48, "ffv1", video);
     const auto frames = read_all(video);
     ASSERT_EQ(frames.size(), 5U);
@@ -95,8 +98,8 @@ TEST(Video, GreyAndDeepOnesThroughFfmpegAreExact) {
 TEST(Video, ColourDeeperThanEightBitsKeepsItsDepth) {
   if (!kFfmpeg) GTEST_SKIP() << "ffmpeg is not installed.";
   const TemporaryFolder folder;
-  put(folder / "raw",
-      planes(64, 48, 2, 16, [](int x, int, int) { return static_cast<unsigned>(400 + 4 * x); }));
+  put_file(folder / "raw",
+           planes(64, 48, 2, 16, [](int x, int, int) { return static_cast<unsigned>(400 + 4 * x); }));
   const std::string video = folder / "v.mkv";
   encode(folder / "raw", "gray16le", 64, 48, "ffv1 -pix_fmt yuv420p10le", video);
   const StackInfo info = open_frames(video)->info();
@@ -113,17 +116,17 @@ TEST(Video, ATruncatedOneIsRefused) {
   if (kFfmpeg) {
     // Incompressible values, so that half of the file contains half of the frames.
     std::mt19937 chance(1);
-    put(folder / "raw",
-        planes(64, 48, 20, 16, [&](int, int, int) { return static_cast<unsigned>(chance() & 0xFFFF); }));
+    put_file(folder / "raw",
+             planes(64, 48, 20, 16, [&](int, int, int) { return static_cast<unsigned>(chance() & 0xFFFF); }));
     for (const char* name : {"deep.avi", "deep.mkv"}) {
       encode(folder / "raw", "gray16le", 64, 48, "ffv1", folder / name);
       names.emplace_back(name);
     }
   }
   for (const std::string& name : names) {
-    const std::string whole = contents(folder / name);
+    const std::string whole = bytes_of(folder / name);
     ASSERT_EQ(refusal(folder / name), "");
-    put(folder / name, whole.substr(0, whole.size() / 2));
+    put_file(folder / name, whole.substr(0, whole.size() / 2));
     const std::string sentence = refusal(folder / name);
     expect_words(sentence, {name, "frame"});
     EXPECT_EQ(std::count(sentence.begin(), sentence.end(), '\n'), 0) << sentence;
@@ -134,7 +137,7 @@ TEST(Video, ATruncatedOneIsRefused) {
 TEST(Video, FramesAreCountedWhereTheHeaderStatesNone) {
   if (!kFfmpeg) GTEST_SKIP() << "ffmpeg is not installed.";
   const TemporaryFolder folder;
-  put(folder / "raw", planes(64, 48, 23, 8, values(8)));
+  put_file(folder / "raw", planes(64, 48, 23, 8, values(8)));
   encode(folder / "raw", "gray", 64, 48, "ffv1", folder / "grey.mkv");
   write_film(folder / "film.avi", 23);
   ASSERT_TRUE(runs(fmt::format("sh -c 'ffmpeg -y -i {} -c copy -f matroska - | cat > {}'",
@@ -149,11 +152,11 @@ TEST(Video, ACutFilmIsRefusedWithoutAnAddress) {
   if (!kFfmpeg) GTEST_SKIP() << "ffmpeg is not installed.";
   const TemporaryFolder folder;
   std::mt19937 chance(1);
-  put(folder / "raw",
-      planes(64, 48, 20, 16, [&](int, int, int) { return static_cast<unsigned>(chance() & 0xFFFF); }));
+  put_file(folder / "raw",
+           planes(64, 48, 20, 16, [&](int, int, int) { return static_cast<unsigned>(chance() & 0xFFFF); }));
   encode(folder / "raw", "gray16le", 64, 48, "ffv1", folder / "deep.mkv");
-  const std::string whole = contents(folder / "deep.mkv");
-  put(folder / "deep.mkv", whole.substr(0, whole.size() / 2));
+  const std::string whole = bytes_of(folder / "deep.mkv");
+  put_file(folder / "deep.mkv", whole.substr(0, whole.size() / 2));
   const std::string sentence = refusal(folder / "deep.mkv");
   expect_words(sentence, {"deep.mkv", "ffmpeg says"});
   EXPECT_EQ(sentence.find("0x"), std::string::npos) << sentence;
@@ -162,7 +165,7 @@ TEST(Video, ACutFilmIsRefusedWithoutAnAddress) {
 TEST(Video, SpecialCharactersInNamesAreHarmless) {
   if (!kFfmpeg) GTEST_SKIP() << "ffmpeg is not installed.";
   const TemporaryFolder folder;
-  put(folder / "raw", planes(64, 48, 2, 8, values(8)));
+  put_file(folder / "raw", planes(64, 48, 2, 8, values(8)));
   encode(folder / "raw", "gray", 64, 48, "ffv1", folder / "v.mkv");
   const std::string odd = folder / "-i pipe:0; $(touch x) 'v%03d'.mkv";
   std::filesystem::rename(folder / "v.mkv", odd);
@@ -174,7 +177,7 @@ TEST(Video, UndecodableFilesAreRefused) {
   std::string noise(5005, '\x7f');
   noise.replace(0, 4, "\0\x01\x02\x03", 4);
   noise.back() = '\0';
-  put(folder / "noise.mp4", noise);
+  put_file(folder / "noise.mp4", noise);
   expect_words(refusal(folder / "noise.mp4"), {"noise.mp4", "cannot be decoded as a video", "ffmpeg"});
 }
 
@@ -208,3 +211,5 @@ TEST(Video, NamesThatLookLikeProtocolsAreFiles) {
   }
   std::filesystem::current_path(back);
 }
+
+}  // namespace twincell::video_test

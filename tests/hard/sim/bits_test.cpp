@@ -15,7 +15,7 @@
 #include "tests/support/shaken_bed.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::bits_test {
 namespace {
 
 /// The frames of a trajectory file that the program wrote.
@@ -142,4 +142,4 @@ TEST(Bits, SettledBedIsNotSlowedBySubnormals) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::bits_test

@@ -13,7 +13,7 @@
 #include "tests/support/collision.hpp"
 #include "tests/support/shaken_bed.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::contact_test {
 namespace {
 
 constexpr SolverKind kKinds[] = {SolverKind::scalar, SolverKind::avx2, SolverKind::avx512,
@@ -224,4 +224,4 @@ TEST(Contact, LoneBeadFliesAParabola) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::contact_test

@@ -14,7 +14,7 @@
 #include "sim/start/start.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::deep_bed_test {
 namespace {
 
 using test::validate;
@@ -67,4 +67,4 @@ TEST(DeepBed, EightyLayersRest) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::deep_bed_test

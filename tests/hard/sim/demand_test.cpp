@@ -14,7 +14,7 @@
 #include "tests/support/put_file.hpp"
 #include "tests/support/sanitized.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::demand_test {
 namespace {
 
 const std::string kScene =
@@ -101,4 +101,4 @@ TEST(ResourceDemand, MoreThanTheDiskHasIsRefusedByKey) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::demand_test

@@ -6,7 +6,7 @@
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/complaint.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::drive_tables_test {
 namespace {
 
 const std::string kBed =
@@ -124,4 +124,4 @@ TEST(DriveTables, WrongHorizontalMotionsAreRefused) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::drive_tables_test

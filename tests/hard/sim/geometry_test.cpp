@@ -17,7 +17,7 @@
 #include "tests/support/shaken_bed.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::geometry_test {
 namespace {
 
 /// A scene whose beads come from a table.
@@ -244,4 +244,4 @@ TEST(Drive, PlateAtRestOrBelowGammaOneRuns) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::geometry_test

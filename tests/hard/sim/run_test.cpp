@@ -18,7 +18,7 @@
 #include "tests/support/rigid_bed.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::run_test {
 namespace {
 
 const std::string kGood = "preset = \"fortini-huang-2015\"\n[beads]\ncount = 50\n[drive]\ngamma = 1.5\n";
@@ -335,4 +335,4 @@ TEST(Run, AFailedRunReplacesNothingButAFailedRun) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::run_test

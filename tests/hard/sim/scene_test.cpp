@@ -21,7 +21,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "trajectory/recorded_motion.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::scene_test {
 namespace {
 
 const std::string kGood = "preset = \"fortini-huang-2015\"\n[beads]\ncount = 50\n[drive]\ngamma = 1.5\n";
@@ -829,4 +829,4 @@ TEST(Presets, AreThePapersCells) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::scene_test

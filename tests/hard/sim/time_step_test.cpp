@@ -16,7 +16,7 @@
 #include "tests/support/collision.hpp"
 #include "tests/support/complaint.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::time_step_test {
 namespace {
 
 const std::string kGood = "preset = \"fortini-huang-2015\"\n[beads]\ncount = 50\n[drive]\ngamma = 1.5\n";
@@ -311,4 +311,4 @@ TEST(TimeStep, FramesFallOnPhases) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::time_step_test

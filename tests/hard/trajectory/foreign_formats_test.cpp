@@ -18,7 +18,7 @@
 #include "trajectory/foreign/export_trajectory.hpp"
 #include "trajectory/foreign/foreign_trajectory.hpp"
 
-namespace twincell {
+namespace twincell::foreign_formats_test {
 namespace {
 
 const Vec3 kNowhere = Vec3::Constant(std::nan(""));
@@ -778,4 +778,4 @@ TEST_F(ForeignFormats, AGsdFileWithAFlippedByteIsReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::foreign_formats_test

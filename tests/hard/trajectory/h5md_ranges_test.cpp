@@ -20,7 +20,7 @@
 #include "trajectory/formats/h5md_file.hpp"
 #include "trajectory/recorded_motion.hpp"
 
-namespace twincell {
+namespace twincell::h5md_ranges_test {
 namespace {
 
 TrajectoryInfo sound() {
@@ -491,4 +491,4 @@ TEST(H5mdRanges, SpeedsBeyondAnyBedAreRefused) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::h5md_ranges_test

@@ -14,7 +14,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "trajectory/foreign/foreign_trajectory.hpp"
 
-namespace twincell {
+namespace twincell::lammps_dump_test {
 namespace {
 
 constexpr double kExact = 1e-15;
@@ -328,4 +328,4 @@ TEST_F(Dump, DamagedOnesNeitherCrashNorPass) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::lammps_dump_test

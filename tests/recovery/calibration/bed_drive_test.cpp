@@ -15,7 +15,7 @@
 #include "tests/support/rigid_bed.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::calibration {
+namespace twincell::calibration::bed_drive_test {
 namespace {
 
 /// Camera view of a run: positions have an uncertainty of a fiftieth of a bead, and nothing below `lowest` is
@@ -284,4 +284,4 @@ TEST(BedDrive, TimeOnThePlateIsThatOfABodyThatDoesNotRebound) {
 }
 
 }  // namespace
-}  // namespace twincell::calibration
+}  // namespace twincell::calibration::bed_drive_test

@@ -17,8 +17,9 @@
 #include "core/error.hpp"
 #include "tests/support/filmed_plate.hpp"
 
-using namespace twincell;
-using namespace twincell::calibration;
+namespace twincell::cell_geometry_test {
+
+using namespace calibration;
 
 namespace {
 
@@ -485,3 +486,5 @@ TEST(Target, CornersOfADrawnBoardAreFound) {
   EXPECT_NEAR(std::max(points.front().y_px, points.back().y_px), 19.5 + 36 * 6, 0.1);
   EXPECT_TRUE(imaging::find_target(cv::Mat1b(300, 400, static_cast<unsigned char>(255)), {}).empty());
 }
+
+}  // namespace twincell::cell_geometry_test

@@ -19,8 +19,9 @@
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/validation.hpp"
 
-using namespace twincell;
-using namespace twincell::calibration;
+namespace twincell::contacts_test {
+
+using namespace calibration;
 
 namespace {
 
@@ -510,3 +511,5 @@ TEST(CurveComponents, TwoFormsGiveTwoComponents) {
   EXPECT_TRUE(std::isnan(c.numbers(curves[12])[0]));
   EXPECT_THROW(components_of({curves[0], curves[1]}), InputError);
 }
+
+}  // namespace twincell::contacts_test

@@ -15,8 +15,9 @@
 #include "core/error.hpp"
 #include "tests/support/complaint.hpp"
 
-using namespace twincell;
-using namespace twincell::calibration;
+namespace twincell::drive_fit_test {
+
+using namespace calibration;
 
 namespace {
 
@@ -321,3 +322,5 @@ TEST(DriveFit, AnAccelerometerIsFittedTheSameWay) {
   t.time_s[100] = 3;
   EXPECT_THROW(fit_vibration(t), InputError);
 }
+
+}  // namespace twincell::drive_fit_test

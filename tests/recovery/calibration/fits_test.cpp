@@ -12,8 +12,9 @@
 #include "core/error.hpp"
 #include "tests/support/validation.hpp"
 
-using namespace twincell;
-using namespace twincell::calibration;
+namespace twincell::fits_test {
+
+using namespace calibration;
 
 namespace {
 
@@ -336,3 +337,5 @@ TEST(Fits, FlatDataLeaveADecayUndetermined) {
     EXPECT_NEAR(flat.at(20), 0.3, 1e-9);
   }
 }
+
+}  // namespace twincell::fits_test

@@ -9,8 +9,9 @@
 #include "calibration/laws/model.hpp"
 #include "tests/support/validation.hpp"
 
-using namespace twincell;
-using namespace twincell::calibration;
+namespace twincell::nist_test {
+
+using namespace calibration;
 
 namespace {
 
@@ -177,3 +178,5 @@ TEST(Nist, Rat43) {
                              {1.6302297817E+01, 2.0828735829E+00, 1.9566123451E-01, 6.8761936385E-01},
                              8.7864049080E+03});
 }
+
+}  // namespace twincell::nist_test

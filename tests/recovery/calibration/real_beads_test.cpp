@@ -10,8 +10,9 @@
 #include "imaging/benchmark/score.hpp"
 #include "imaging/stack/open_frames.hpp"
 
-using namespace twincell;
-using namespace twincell::calibration;
+namespace twincell::real_beads_test {
+
+using namespace calibration;
 
 namespace {
 
@@ -57,3 +58,5 @@ TEST(RealBeads, AllPucksAreCounted) {
   EXPECT_EQ(c.count.value, 22);            // the count in the name of the film
   EXPECT_NEAR(c.diameter.value, 45, 1.5);  // "about 45 px"
 }
+
+}  // namespace twincell::real_beads_test

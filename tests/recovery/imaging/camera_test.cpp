@@ -8,7 +8,6 @@
 #include <fstream>
 #include <iostream>
 #include <numbers>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
 #include <sstream>
@@ -22,8 +21,9 @@
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::camera_test {
+
+using namespace imaging;
 
 namespace {
 
@@ -549,3 +549,5 @@ TEST(CameraLike, FindsTheNoiseOfAnotherCamera) {
   Held none(std::vector<cv::Mat>{});
   EXPECT_THROW(with_noise_of(none, 24, false, plain()), InputError);
 }
+
+}  // namespace twincell::camera_test

@@ -13,8 +13,9 @@
 #include "imaging/track/write_trajectory.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::closed_loop_test {
+
+using namespace imaging;
 
 namespace {
 
@@ -129,3 +130,5 @@ TEST(ClosedLoop, ThreadsDoNotMatter) {
         EXPECT_EQ(one.frames()[f].position[k][a], two.frames()[f].position[k][a]);
   }
 }
+
+}  // namespace twincell::closed_loop_test

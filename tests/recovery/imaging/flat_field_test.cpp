@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <iostream>
-#include <opencv2/imgcodecs.hpp>
 #include <random>
 #include <string>
 #include <vector>
@@ -16,9 +15,10 @@
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/track/locate_stack.hpp"
+#include "tests/support/pictures.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::flat_field_test {
 namespace {
 
 constexpr int kWidth = 260, kHeight = 240;
@@ -66,7 +66,7 @@ struct Stacks {
     const cv::Mat1d share = grime();
     const auto write = [&](const rendered::Picture& p, const std::filesystem::path& to, std::uint64_t seed) {
       const cv::Mat1d dirty = (rendered::expected(p) - p.pedestal).mul(share) + p.pedestal;
-      cv::imwrite(to.string() + ".png", rendered::expose(dirty, p, kSnr, seed));
+      write_picture(to.string() + ".png", rendered::expose(dirty, p, kSnr, seed));
     };
     for (int f = 0; f < kFrames; ++f)
       write(layer(f), frames / std::to_string(f), static_cast<std::uint64_t>(f) + 1);
@@ -135,7 +135,7 @@ TEST(FlatField, RemovesStaticDirt) {
 TEST(FlatField, RefusesWhatCannotBe) {
   const TemporaryFolder folder;
   const Stacks stacks(folder);
-  cv::imwrite((folder / "black.png").string(), cv::Mat1b::zeros(kHeight, kWidth));
+  write_picture(folder / "black.png", cv::Mat1b::zeros(kHeight, kWidth));
   EXPECT_THROW(flat_of_blank(*open_frames(folder / "black.png")), InputError);
   const auto other = flattened(open_frames(stacks.frames), cv::Mat1f::ones(10, 10));
   cv::Mat frame;
@@ -143,4 +143,4 @@ TEST(FlatField, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::flat_field_test

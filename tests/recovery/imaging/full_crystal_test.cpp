@@ -6,7 +6,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <opencv2/imgcodecs.hpp>
 #include <random>
 #include <string>
 #include <vector>
@@ -19,9 +18,10 @@
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/track/locate_stack.hpp"
 #include "tests/support/hexagonal_sites.hpp"
+#include "tests/support/pictures.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::full_crystal_test {
 namespace {
 
 using rendered::Disc;
@@ -68,11 +68,11 @@ TEST_P(FullCrystal, IsFoundUnasked) {
   const cv::Mat1d light = rendered::expected(truth);
   const TemporaryFolder folder;
   const std::string name = (folder.path() / "frame.png").string();
-  cv::imwrite(name, rendered::expose(light, truth, kSnr, 3));
+  write_picture(name, rendered::expose(light, truth, kSnr, 3));
   if (const char* keep = std::getenv("TWINCELL_FAILED_FRAMES"))
-    cv::imwrite(std::string(keep) + "/crystal" + std::to_string(int(c.diameter)) + "_" +
-                    std::to_string(int(10 * c.blur)) + (c.jitter > 0 ? "j" : "") + ".png",
-                cv::imread(name));
+    write_picture(std::string(keep) + "/crystal" + std::to_string(int(c.diameter)) + "_" +
+                      std::to_string(int(10 * c.blur)) + (c.jitter > 0 ? "j" : "") + ".png",
+                  read_picture(name));
   LocatorOptions options;
   options.polarity_known = false;
   Marks marks;
@@ -114,4 +114,4 @@ INSTANTIATE_TEST_SUITE_P(Discs, FullCrystal,
                          });
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::full_crystal_test

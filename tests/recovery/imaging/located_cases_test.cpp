@@ -13,7 +13,6 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,8 +22,9 @@
 #include "imaging/benchmark/cramer_rao_bound.hpp"
 #include "imaging/benchmark/detection_score.hpp"
 #include "imaging/locate/locator.hpp"
+#include "tests/support/pictures.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::located_cases_test {
 namespace {
 
 using rendered::Case;
@@ -85,7 +85,7 @@ class LocatedCase : public testing::Test {
     const char* folder = std::getenv("TWINCELL_FAILED_FRAMES");
     if (!HasFailure() || folder == nullptr) return;
     for (const auto& [name, snr] : looked_at_)
-      cv::imwrite(fmt::format("{}/{}_{:g}.png", folder, name, snr), seen(name, snr).frames[0].frame);
+      write_picture(fmt::format("{}/{}_{:g}.png", folder, name, snr), seen(name, snr).frames[0].frame);
   }
   const Seen& look(const std::string& name, double snr) {
     looked_at_.emplace_back(name, snr);
@@ -323,4 +323,4 @@ TEST_F(LocatedCase, TurnedPicturesGiveTurnedResults) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::located_cases_test

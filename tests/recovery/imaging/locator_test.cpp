@@ -14,8 +14,9 @@
 #include "imaging/settings/auto_configuration.hpp"
 #include "imaging/settings/size_hypotheses.hpp"
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::locator_test {
+
+using namespace imaging;
 
 namespace {
 
@@ -158,3 +159,5 @@ TEST(Locator, DiameterIsEstimatedToAFewPerCent) {
     EXPECT_NEAR(found, diameter, 0.05 * diameter);
   }
 }
+
+}  // namespace twincell::locator_test

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
 #include <string>
@@ -23,9 +22,10 @@
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/track/locate_stack.hpp"
+#include "tests/support/pictures.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::looks_test {
 namespace {
 
 using rendered::Disc;
@@ -166,11 +166,11 @@ class Looks : public testing::TestWithParam<Look> {
         light(y, x) = picture.pedestal + ground(y, x) * (light(y, x) - picture.pedestal);
     const TemporaryFolder folder;
     const std::string name = (folder.path() / "frame.png").string();
-    cv::imwrite(name, rendered::expose(light, picture, kSnr, 3));
+    write_picture(name, rendered::expose(light, picture, kSnr, 3));
     if (const char* keep = std::getenv("TWINCELL_FAILED_FRAMES"))
-      cv::imwrite(
+      write_picture(
           std::string(keep) + "/" + look.name + "_" + arrangement + std::to_string(int(diameter)) + ".png",
-          cv::imread(name));
+          read_picture(name));
 
     LocatorOptions options;
     options.polarity_known = false;
@@ -256,4 +256,4 @@ INSTANTIATE_TEST_SUITE_P(Discs, Looks, testing::ValuesIn(kLooks),
                          [](const auto& look) { return look.param.name; });
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::looks_test

@@ -18,7 +18,7 @@
 #include "imaging/locate/locator.hpp"
 #include "imaging/settings/auto_configuration.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::mixed_sizes_test {
 namespace {
 
 using rendered::Marks;
@@ -146,4 +146,4 @@ TEST(OneSize, SpreadWideIsLocatedAsTwo) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::mixed_sizes_test

@@ -10,7 +10,7 @@
 
 #include "tests/support/look_at_picture.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::pale_beads_test {
 namespace {
 
 constexpr int kRows = 9, kColumns = 12, kWall_px = 12, kFine = 8;  // kFine: samples of a pixel along a side
@@ -71,4 +71,4 @@ TEST(PaleBeads, OpaqueOnesAmongThemAreTracers) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::pale_beads_test

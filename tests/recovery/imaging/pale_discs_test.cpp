@@ -5,7 +5,6 @@
 
 #include <cstdio>
 #include <numbers>
-#include <opencv2/imgcodecs.hpp>
 #include <random>
 #include <vector>
 
@@ -15,9 +14,10 @@
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/track/locate_stack.hpp"
+#include "tests/support/pictures.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::pale_discs_test {
 namespace {
 
 using rendered::Marks;
@@ -48,7 +48,7 @@ Marks::Summary look(const Pale& c, LocatorOptions options) {
   const cv::Mat1d light = rendered::expected(picture);
   const TemporaryFolder folder;
   const std::string name = (folder.path() / "frame.png").string();
-  cv::imwrite(name, rendered::expose(light, picture, c.snr, 4));
+  write_picture(name, rendered::expose(light, picture, c.snr, 4));
   const auto frames = open_frames(name);
   Marks marks;
   FramesAhead ahead(*frames);
@@ -119,4 +119,4 @@ INSTANTIATE_TEST_SUITE_P(Contrasts, PaleDiscs,
                          });
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::pale_discs_test

@@ -14,8 +14,9 @@
 #include "imaging/track/locate_stack.hpp"
 #include "imaging/track/track.hpp"
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::real_images_test {
+
+using namespace imaging;
 
 TEST(RealImages, BedloadIsFoundLinkedAndRepeats) {
   const std::filesystem::path folder = TWINCELL_SOURCE_DIR "/../shared/real_images/bedload_left_half";
@@ -102,3 +103,5 @@ TEST(RealImages, PhotoelasticDiscsOfTwoSizesAreFoundUnasked) {
   ASSERT_EQ(settled.other_diameters_px.size(), 1U);
   EXPECT_NEAR(settled.other_diameters_px[0], 103.2, 1.5);
 }
+
+}  // namespace twincell::real_images_test

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
 
@@ -13,9 +12,10 @@
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/stack/open_frames.hpp"
 #include "imaging/track/locate_stack.hpp"
+#include "tests/support/pictures.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::shown_later_test {
 namespace {
 
 using rendered::Disc;
@@ -43,8 +43,8 @@ struct Seen {
 Seen locate_all(const std::vector<Picture>& pictures) {
   const TemporaryFolder folder;
   for (std::size_t f = 0; f < pictures.size(); ++f)
-    cv::imwrite((folder.path() / ("frame_" + std::to_string(100 + f) + ".png")).string(),
-                rendered::expose(rendered::expected(pictures[f]), pictures[f], 51, f + 1));
+    write_picture(folder.path() / ("frame_" + std::to_string(100 + f) + ".png"),
+                  rendered::expose(rendered::expected(pictures[f]), pictures[f], 51, f + 1));
   Seen seen;
   LocatorOptions options;
   options.polarity_known = false;
@@ -115,4 +115,4 @@ TEST(ShownLater, OneStrangeFrameDoesNotDecide) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::shown_later_test

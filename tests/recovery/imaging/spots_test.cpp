@@ -10,7 +10,7 @@
 #include "imaging/settings/settings_doubts.hpp"
 #include "tests/support/one_picture.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::spots_test {
 namespace {
 
 /// The doubts about the settings found for discs of one width on a lattice.
@@ -40,4 +40,4 @@ TEST(Spots, OfLessThanFivePixelsAreDoubted) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::spots_test

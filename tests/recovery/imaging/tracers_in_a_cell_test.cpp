@@ -11,7 +11,7 @@
 #include "imaging/track/track.hpp"
 #include "tests/support/look_at_picture.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::tracers_in_a_cell_test {
 namespace {
 
 const std::filesystem::path kDemo = TWINCELL_SOURCE_DIR "/data_samples/demo";
@@ -75,4 +75,4 @@ TEST(TracersInACell, ThatAreLeftOutAreCounted) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::tracers_in_a_cell_test

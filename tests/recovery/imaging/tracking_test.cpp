@@ -15,8 +15,9 @@
 #include "tests/support/temporary_folder.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::tracking_test {
+
+using namespace imaging;
 
 namespace {
 
@@ -162,3 +163,5 @@ TEST(Tracking, MemoryDoesNotGrowWithTheStack) {
   // The beads of 3800 more frames would take 73 MiB in memory.
   EXPECT_LE(lengthy - brief, 8);
 }
+
+}  // namespace twincell::tracking_test

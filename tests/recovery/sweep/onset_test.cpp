@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace twincell::sweep {
+namespace twincell::sweep::onset_test {
 namespace {
 
 /// A search as a sweep performs it, with answers drawn from P(yes at x) = 1/(1 + exp(-(x - mu)/w)); w = 0 is
@@ -138,4 +138,4 @@ TEST(Onset, RunsGoWhereTheOnsetMayBe) {
 }
 
 }  // namespace
-}  // namespace twincell::sweep
+}  // namespace twincell::sweep::onset_test

@@ -10,7 +10,7 @@
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::sweep {
+namespace twincell::sweep::precision_rule_test {
 namespace {
 
 sim::Scene scene_of(const std::string& until) {
@@ -123,4 +123,4 @@ TEST(PrecisionRule, AQuantityItDoesNotKnowIsRefusedWithThoseItKnows) {
 }
 
 }  // namespace
-}  // namespace twincell::sweep
+}  // namespace twincell::sweep::precision_rule_test

@@ -12,7 +12,7 @@
 #include "trajectory/spacing.hpp"
 #include "trajectory/trajectory.hpp"
 
-namespace twincell::analysis {
+namespace twincell::analysis::cancellation_test {
 namespace {
 
 class Cancellation : public ::testing::Test {
@@ -64,4 +64,4 @@ TEST_F(Cancellation, StopsTheSearchForTheFirstFrameAtPhaseZero) {
 }
 
 }  // namespace
-}  // namespace twincell::analysis
+}  // namespace twincell::analysis::cancellation_test

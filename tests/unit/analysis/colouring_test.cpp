@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 
-namespace twincell::analysis {
+namespace twincell::analysis::colouring_test {
 namespace {
 
 /// Hexagonal flower of 7 touching beads, two frames one cycle apart; all beads move by (0.3, 0, 0.4).
@@ -78,4 +78,4 @@ TEST(Colouring, EveryWordOfTheTableNeedsItsData) {
 }
 
 }  // namespace
-}  // namespace twincell::analysis
+}  // namespace twincell::analysis::colouring_test

@@ -12,7 +12,7 @@
 #include "tests/support/rigid_bed.hpp"
 #include "trajectory/trajectory.hpp"
 
-namespace twincell::analysis {
+namespace twincell::analysis::differences_test {
 namespace {
 
 using Runs = std::vector<Run>;  // in the body of a test `Run` is a name of googletest
@@ -346,4 +346,4 @@ TEST(Differences, CommonTracerBiasCancels) {
   EXPECT_NEAR(only(runs, apart).tracers.value(), 0.5, 1e-12);
 }
 
-}  // namespace twincell::analysis
+}  // namespace twincell::analysis::differences_test

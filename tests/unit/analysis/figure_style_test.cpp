@@ -8,7 +8,7 @@
 
 #include "tests/support/figure_rules.hpp"
 
-namespace twincell::analysis::figure_style {
+namespace twincell::analysis::figure_style::figure_style_test {
 namespace {
 
 PlotAxis axis(bool logarithmic, double low, double high) {
@@ -108,4 +108,4 @@ TEST(FigureStyle, StyleChecksDetectViolations) {
 }
 
 }  // namespace
-}  // namespace twincell::analysis::figure_style
+}  // namespace twincell::analysis::figure_style::figure_style_test

@@ -11,8 +11,9 @@
 #include "core/error.hpp"
 #include "tests/support/program.hpp"
 
-using namespace twincell;
-using namespace twincell::analysis;
+namespace twincell::gnuplot_text_test {
+
+using namespace analysis;
 
 namespace {
 
@@ -77,3 +78,5 @@ TEST(GnuplotText, FitRunsNoCommandOfAColumnsName) {
     EXPECT_TRUE(std::filesystem::exists(folder / "out/fit.svg"));
   }
 }
+
+}  // namespace twincell::gnuplot_text_test

@@ -10,6 +10,8 @@
 
 #include "analysis/observable/observable.hpp"
 
+namespace twincell::observables_page_test {
+
 namespace {
 
 TEST(ObservablesPage, ListsEveryResultOnce) {
@@ -33,3 +35,5 @@ TEST(ObservablesPage, ListsEveryResultOnce) {
 }
 
 }  // namespace
+
+}  // namespace twincell::observables_page_test

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace twincell::analysis {
+namespace twincell::analysis::onset_agreement_test {
 namespace {
 
 PhaseBoundary onset(Side side, std::optional<double> below, std::optional<double> above, double n_l = 10) {
@@ -82,4 +82,4 @@ TEST(OnsetAgreement, ASweepIsUsedWithoutTwins) {
 }
 
 }  // namespace
-}  // namespace twincell::analysis
+}  // namespace twincell::analysis::onset_agreement_test

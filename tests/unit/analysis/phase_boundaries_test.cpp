@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace twincell::analysis {
+namespace twincell::analysis::phase_boundaries_test {
 namespace {
 
 Run run(Side side, double gamma, BedPhase phase, double n_l = 20, const std::string& start = {}) {
@@ -81,4 +81,4 @@ TEST(Boundaries, LayersAndStartsAreKeptApartAndTheUndeterminedLeftOut) {
   EXPECT_EQ(boundary_of(*random), "simulation (random)");
 }
 
-}  // namespace twincell::analysis
+}  // namespace twincell::analysis::phase_boundaries_test

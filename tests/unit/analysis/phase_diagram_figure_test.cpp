@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace twincell::analysis {
+namespace twincell::analysis::phase_diagram_figure_test {
 namespace {
 
 using Runs = std::vector<Run>;  // in the body of a test `Run` is a name of googletest
@@ -55,4 +55,4 @@ TEST(PhaseDiagramFigure, WithoutAnOnsetOrWithSeveralHeightsNothingIsShaded) {
 }
 
 }  // namespace
-}  // namespace twincell::analysis
+}  // namespace twincell::analysis::phase_diagram_figure_test

@@ -9,7 +9,7 @@
 #include "analysis/runs/match_verdict.hpp"
 #include "analysis/runs/phase_boundaries.hpp"
 
-namespace twincell::analysis {
+namespace twincell::analysis::phase_evidence_test {
 namespace {
 
 using Phases = std::vector<BedPhase>;
@@ -133,4 +133,4 @@ TEST(PhaseEvidence, SidesWithoutACommonPhaseDiffer) {
   EXPECT_EQ(verdict(runs, match_runs(runs).at(0)), MatchVerdict::differ);
 }
 
-}  // namespace twincell::analysis
+}  // namespace twincell::analysis::phase_evidence_test

@@ -15,7 +15,7 @@
 #include "tests/support/complaint.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::analysis {
+namespace twincell::analysis::pooling_test {
 namespace {
 
 Result number(const std::string& name, double value, std::optional<Interval> interval = {}) {
@@ -338,4 +338,4 @@ TEST(Results, ComeBackFromJson) {
   EXPECT_EQ(results_json(results_from_json(JsonView::parse(text, "results.json"))), text);
 }
 
-}  // namespace twincell::analysis
+}  // namespace twincell::analysis::pooling_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-namespace twincell::analysis {
+namespace twincell::analysis::report_data_test {
 namespace {
 
 Run bare(const std::string& name) {
@@ -79,4 +79,4 @@ TEST(ReportData, TheConvectionFieldWithItsExtent) {
   EXPECT_FALSE(told(run)["results"].contains("displacement_field"));
 }
 
-}  // namespace twincell::analysis
+}  // namespace twincell::analysis::report_data_test

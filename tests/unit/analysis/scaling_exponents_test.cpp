@@ -9,7 +9,7 @@
 #include "analysis/observable/observable.hpp"
 #include "trajectory/trajectory.hpp"
 
-namespace twincell::analysis {
+namespace twincell::analysis::scaling_exponents_test {
 
 TEST(LengthPower, OfTheUnitsOfResults) {
   EXPECT_EQ(length_power("sigma"), 1);
@@ -95,4 +95,4 @@ TEST(AmplitudePower, IsTheDerivativeByTheAmplitude) {
   EXPECT_EQ(amplitude_power(result_of("T_bar")), -2);
 }
 
-}  // namespace twincell::analysis
+}  // namespace twincell::analysis::scaling_exponents_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace twincell::analysis {
+namespace twincell::analysis::short_periods_test {
 namespace {
 
 TrajectoryInfo periodic(int dimension, const Vec3& size) {
@@ -33,4 +33,4 @@ TEST(ShortPeriods, AreThoseBelowTwiceTheReach) {
 }
 
 }  // namespace
-}  // namespace twincell::analysis
+}  // namespace twincell::analysis::short_periods_test

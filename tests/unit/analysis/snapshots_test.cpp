@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace twincell::analysis {
+namespace twincell::analysis::snapshots_test {
 namespace {
 
 MemoryTrajectory film(int cycles, int phases, int extra = 0, int first_phase = 0) {
@@ -51,4 +51,4 @@ TEST(Snapshots, WithoutPhasesEvenlySpread) {
   EXPECT_EQ(chosen, (std::vector<std::size_t>{0, 24, 49, 74, 99}));
 }
 
-}  // namespace twincell::analysis
+}  // namespace twincell::analysis::snapshots_test

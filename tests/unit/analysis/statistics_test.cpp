@@ -9,8 +9,9 @@
 
 #include "tests/support/validation.hpp"
 
-using namespace twincell;
-using namespace twincell::analysis;
+namespace twincell::statistics_test {
+
+using namespace analysis;
 
 namespace {
 
@@ -377,3 +378,5 @@ TEST(Statistics, ExactBinomialAgainstTablesAndCounts) {
                    return binomial_interval(slips(generator), 20000, "trials");
                  }));
 }
+
+}  // namespace twincell::statistics_test

@@ -9,8 +9,9 @@
 #include "analysis/runs/phase_diagram.hpp"
 #include "tests/support/rigid_bed.hpp"
 
-using namespace twincell;
-using namespace twincell::analysis;
+namespace twincell::tracers_test {
+
+using namespace analysis;
 
 TEST(Tracers, OfACrystalAreTheMiddleRow) {
   const MemoryTrajectory bed = test::rigid_bed({.gamma = 1.5, .columns = 20, .rows = 11});
@@ -121,3 +122,5 @@ TEST(MatchRuns, ByGammaWithinTheToleranceAndByLayers) {
   EXPECT_EQ(matches[2].simulations, std::vector<std::size_t>{3});  // different number of layers
   EXPECT_EQ(matches[3].simulations, std::vector<std::size_t>{5});  // differs by 2.7 %
 }
+
+}  // namespace twincell::tracers_test

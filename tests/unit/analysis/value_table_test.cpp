@@ -10,7 +10,7 @@
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::analysis {
+namespace twincell::analysis::value_table_test {
 namespace {
 
 TEST(ValueTable, GivesTheNumbersOfItsRowsAndNoneElsewhere) {
@@ -47,4 +47,4 @@ TEST(ValueTable, RefusesWhatItCannotPlace) {
 }
 
 }  // namespace
-}  // namespace twincell::analysis
+}  // namespace twincell::analysis::value_table_test

@@ -9,7 +9,7 @@
 #include "analysis/report/windows_figure.hpp"
 #include "tests/support/complaint.hpp"
 
-namespace twincell::analysis {
+namespace twincell::analysis::windows_test {
 namespace {
 
 constexpr int kPhases = 4;
@@ -127,4 +127,4 @@ TEST(Windows, ImpossibleOnesAreRefused) {
 }
 
 }  // namespace
-}  // namespace twincell::analysis
+}  // namespace twincell::analysis::windows_test

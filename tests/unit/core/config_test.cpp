@@ -12,7 +12,7 @@
 #include "tests/support/complaint.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell {
+namespace twincell::config_test {
 namespace {
 
 std::string complaint(const std::string& value) {
@@ -166,4 +166,4 @@ TEST(Config, KeysAreGivenOnceAndByTheirOwnName) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::config_test

@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace twincell {
+namespace twincell::error_test {
 namespace {
 
 TEST(Error, SentencesEndWithAFullStop) {
@@ -29,4 +29,4 @@ TEST(Error, SentencesAreContinuedWithoutTheirFullStop) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::error_test

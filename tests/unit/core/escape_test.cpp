@@ -7,7 +7,7 @@
 #include <array>
 #include <cstdio>
 
-namespace twincell {
+namespace twincell::escape_test {
 namespace {
 
 TEST(Escape, ControlCharactersAndBytesThatAreNoText) {
@@ -44,4 +44,4 @@ TEST(Escape, ShellWordsAreOneWord) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::escape_test

@@ -14,7 +14,7 @@
 #include "core/temporary_files.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell {
+namespace twincell::in_parallel_test {
 namespace {
 
 TEST(InParallel, EveryJobIsDoneOnce) {
@@ -89,4 +89,4 @@ TEST(InParallel, ManyThreadsMakeAndForgetTemporaries) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::in_parallel_test

@@ -8,7 +8,7 @@
 #include "core/error.hpp"
 #include "tests/support/complaint.hpp"
 
-namespace twincell {
+namespace twincell::json_view_test {
 namespace {
 
 const char* const kText = R"({"a": {"b": [1, {"c": "word"}, null]}, "yes": true, "n": 7, "x": -2.5,
@@ -67,4 +67,4 @@ TEST(JsonView, NamesFileKeyAndAdvice) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::json_view_test

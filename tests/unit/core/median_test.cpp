@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-using namespace twincell;
+namespace twincell::median_test {
 
 TEST(Median, FewValuesAgreeWithSorting) {
   std::mt19937 random(3);
@@ -44,3 +44,5 @@ TEST(RobustSpread, OfFewValues) {
   EXPECT_EQ(robust_spread({-2.0}), 1.4826 * 2);
   EXPECT_EQ(robust_spread({4.0, 5.0, 9.0}, 5), 1.4826);
 }
+
+}  // namespace twincell::median_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace twincell {
+namespace twincell::memory_bandwidth_test {
 namespace {
 
 // Between a tenth of one DDR2 channel, for machines that do much else, and more than any machine has.
@@ -16,4 +16,4 @@ TEST(MemoryBandwidth, IsPhysicallyPlausible) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::memory_bandwidth_test

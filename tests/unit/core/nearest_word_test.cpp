@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace twincell {
+namespace twincell::nearest_word_test {
 
 TEST(NearestWord, AnotherCaseIsNearerThanAnotherLetter) {
   EXPECT_EQ(nearest_word("s_q", {"s_k", "s_b", "S_q"}), "S_q");
@@ -17,4 +17,4 @@ TEST(NearestWord, HalfOfAShortWordIsNoMisprint) {
   EXPECT_EQ(nearest_word("CELL.toml", {"scene.toml"}), "");
 }
 
-}  // namespace twincell
+}  // namespace twincell::nearest_word_test

@@ -6,7 +6,7 @@
 #include "core/config.hpp"
 #include "tests/support/complaint.hpp"
 
-namespace twincell {
+namespace twincell::placeholder_test {
 namespace {
 
 const std::string kText =
@@ -39,4 +39,4 @@ TEST(Placeholder, OtherTextsAreNone) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::placeholder_test

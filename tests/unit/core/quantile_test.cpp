@@ -7,7 +7,7 @@
 
 #include "core/median.hpp"
 
-using namespace twincell;
+namespace twincell::quantile_test {
 
 TEST(Quantile, TakesTheStatedElement) {
   const std::vector<double> odd = {5, 1, 4, 2, 3}, even = {4, 1, 3, 2};
@@ -22,3 +22,5 @@ TEST(Quantile, TakesTheStatedElement) {
   EXPECT_EQ(upper_quantile(even, 0.75), 4);
   EXPECT_EQ(lower_quantile(std::vector<float>{7}, 0.9), 7);
 }
+
+}  // namespace twincell::quantile_test

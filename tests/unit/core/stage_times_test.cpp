@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-namespace twincell {
+namespace twincell::stage_times_test {
 namespace {
 
 double now = 0;
@@ -108,4 +108,4 @@ TEST(StageTimes, TheClockNeverGoesBack) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::stage_times_test

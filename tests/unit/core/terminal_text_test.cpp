@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace twincell {
+namespace twincell::terminal_text_test {
 namespace {
 
 TEST(TerminalText, AShortLineStaysAsItIs) {
@@ -29,4 +29,4 @@ TEST(TerminalText, ACharacterOfSeveralBytesIsOneColumn) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::terminal_text_test

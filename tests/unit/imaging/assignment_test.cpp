@@ -8,8 +8,9 @@
 #include <iostream>
 #include <random>
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::assignment_test {
+
+using namespace imaging;
 
 namespace {
 
@@ -107,3 +108,5 @@ TEST(Assignment, TheBoundOnWorkHolds) {
   EXPECT_EQ(std::adjacent_find(used.begin(), used.end()), used.end()) << "still each column once";
   EXPECT_EQ(assign(0, 0, {}).column_of_row.size(), 0U);
 }
+
+}  // namespace twincell::assignment_test

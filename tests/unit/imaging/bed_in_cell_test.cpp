@@ -9,7 +9,7 @@
 
 #include "trajectory/trajectory.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::bed_in_cell_test {
 namespace {
 
 /// What is said of a bed 10 beads wide and 4 high that rests on its plate in half of each cycle, if the cell
@@ -90,4 +90,4 @@ TEST(BedInCell, APlateOnWhichTheBedDoesNotRestIsDoubtful) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::bed_in_cell_test

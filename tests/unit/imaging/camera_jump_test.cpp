@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace twincell::imaging {
+namespace twincell::imaging::camera_jump_test {
 namespace {
 
 constexpr double kDiameter = 12;
@@ -102,4 +102,4 @@ TEST(CameraJump, OneSentenceNamesFrameAndShift) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::camera_jump_test

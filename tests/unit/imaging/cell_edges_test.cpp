@@ -8,8 +8,9 @@
 #include <random>
 #include <vector>
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::cell_edges_test {
+
+using namespace imaging;
 
 namespace {
 
@@ -165,3 +166,5 @@ TEST(CellEdges, RowsOfBeadsAreNoBars) {
     EXPECT_TRUE(edges.plate.empty()) << diameter_px;
   }
 }
+
+}  // namespace twincell::cell_edges_test

@@ -8,7 +8,7 @@
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::cell_keys_test {
 namespace {
 
 const auto kItself = [](const std::string& key) { return key; };
@@ -100,4 +100,4 @@ TEST(CameraKeys, EveryDefaultIsAValueThatIsRead) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::cell_keys_test

@@ -7,8 +7,9 @@
 #include <iostream>
 #include <vector>
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::collective_matching_test {
+
+using namespace imaging;
 
 namespace {
 
@@ -180,3 +181,5 @@ TEST(CollectiveMatching, BeadsWithoutChoiceAndDetectionsWithoutBead) {
   EXPECT_EQ(match.column_of_row, (std::vector<std::int64_t>{0, Assignment::kAlone, Assignment::kAlone}));
   EXPECT_TRUE(match_collectively(places, {}, {}, kDiameter).margin.size() == 3);
 }
+
+}  // namespace twincell::collective_matching_test

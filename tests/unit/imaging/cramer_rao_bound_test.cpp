@@ -13,7 +13,7 @@
 #include "imaging/benchmark/packing.hpp"
 #include "imaging/benchmark/picture.hpp"
 
-namespace twincell::imaging::rendered {
+namespace twincell::imaging::rendered::cramer_rao_bound_test {
 namespace {
 
 /// The bound with x, y, R and a of all discs free at the same time; derivatives from finite differences of
@@ -102,4 +102,4 @@ TEST(Packing, DepositedDiscsTouchAndDoNotOverlap) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging::rendered
+}  // namespace twincell::imaging::rendered::cramer_rao_bound_test

@@ -5,13 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/videoio.hpp>
 
 #include "core/error.hpp"
+#include "tests/support/pictures.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::drawing_test {
 namespace {
 
 // Ends and middle of viridis as matplotlib lists them (Smith & van der Walt 2015), BGR.
@@ -64,7 +63,7 @@ cv::Mat3b drawn(const TrajectorySource& source, DrawJob job) {
   const TemporaryFolder folder;
   job.output = folder / "p.png";
   draw(source, job);
-  return cv::imread(job.output.string(), cv::IMREAD_COLOR);
+  return read_picture(job.output);
 }
 
 cv::Vec3b at(const cv::Mat3b& picture, const cv::Point2d& p) {
@@ -189,9 +188,10 @@ TEST(Drawing, AFilmHasTheChosenFrames) {
   job.pixels_per_sigma = 20;
   const Drawn done = draw(trajectory, job);
   EXPECT_EQ(done.frames, 3U);
-  cv::VideoCapture film(job.output.string());
+  const auto film = codecs().open_film(job.output.string(), false);
+  ASSERT_NE(film, nullptr);
   int n = 0;
-  for (cv::Mat frame; film.read(frame); ++n) EXPECT_EQ(frame.size(), done.size);
+  for (cv::Mat frame; film->read(frame); ++n) EXPECT_EQ(frame.size(), done.size);
   EXPECT_EQ(n, 3);
 }
 
@@ -220,4 +220,4 @@ TEST(Drawing, WrongRequestsAreRefused) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::drawing_test

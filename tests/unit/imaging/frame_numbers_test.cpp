@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace twincell::imaging::frames {
+namespace twincell::imaging::frames::frame_numbers_test {
 namespace {
 
 std::vector<std::string> numbered(const char* form, int from, int to, int step = 1) {
@@ -99,4 +99,4 @@ TEST(FrameNumbers, TwoCamerasInAFolderAreNoticed) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging::frames
+}  // namespace twincell::imaging::frames::frame_numbers_test

@@ -5,7 +5,7 @@
 
 #include "imaging/preprocess/preprocess.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::grey_walls_test {
 namespace {
 
 constexpr int kWide = 240, kHigh = 200, kWall = 40, kDiameter = 20;
@@ -66,4 +66,4 @@ TEST(GreyWalls, NoisyWallsAreWhole) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::grey_walls_test

@@ -12,7 +12,7 @@
 #include "imaging/settings/larger_discs.hpp"
 #include "tests/zoo/imaging/painter.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::groups_of_beads_test {
 namespace {
 
 using Shade = std::function<double(double u, double v, double below)>;
@@ -91,4 +91,4 @@ TEST(LargerDiscs, DiscsThatLookLikeTheBeadsAreFound) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::groups_of_beads_test

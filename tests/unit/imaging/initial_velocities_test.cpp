@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace twincell::imaging {
+namespace twincell::imaging::initial_velocities_test {
 namespace {
 
 constexpr double kD = 15;
@@ -96,4 +96,4 @@ TEST(InitialVelocities, ShortAndEmptyStacksHaveNone) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::initial_velocities_test

@@ -14,7 +14,7 @@
 #include "imaging/benchmark/picture.hpp"
 #include "imaging/refine/picture_fit.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::judge_test {
 namespace {
 
 Detection good(double x, double y) {
@@ -247,4 +247,4 @@ TEST(Verdict, EachHasAWord) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::judge_test

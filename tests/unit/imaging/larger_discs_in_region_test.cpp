@@ -6,7 +6,7 @@
 
 #include "imaging/track/locating_request.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::larger_discs_in_region_test {
 namespace {
 
 TEST(LargerDiscs, FoundInARegionAreThoseOfTheWholePicture) {
@@ -26,4 +26,4 @@ TEST(LargerDiscs, FoundInARegionAreThoseOfTheWholePicture) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::larger_discs_in_region_test

@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-namespace twincell::imaging {
+namespace twincell::imaging::larger_discs_test {
 namespace {
 
 constexpr double kBead = 12;  // px
@@ -88,4 +88,4 @@ TEST(LargerDiscs, BeadsAloneAndTheirContainerAreNone) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::larger_discs_test

@@ -9,8 +9,9 @@
 #include "imaging/benchmark/picture.hpp"
 #include "tests/support/hexagonal_sites.hpp"
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::lattice_constant_test {
+
+using namespace imaging;
 
 namespace {
 
@@ -64,3 +65,5 @@ TEST(LatticeConstant, NoneWhereThereIsNoCrystal) {
   for (const int side : {1, 2, 7, 12})
     EXPECT_EQ(lattice_constant(cv::Mat1b(side, 3 * side, uchar{9})), 0) << side;
 }
+
+}  // namespace twincell::lattice_constant_test

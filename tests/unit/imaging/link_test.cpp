@@ -11,8 +11,9 @@
 #include "core/error.hpp"
 #include "imaging/geometry/pixel_frame.hpp"
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::link_test {
+
+using namespace imaging;
 
 namespace {
 
@@ -418,3 +419,5 @@ TEST(Linker, CrowdedFrameStaysBelowQuadraticCost) {
     EXPECT_LE(report.edges, 16 * tracks);
   }
 }
+
+}  // namespace twincell::link_test

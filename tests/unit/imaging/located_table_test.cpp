@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 #include "tests/support/complaint.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::located_table_test {
 namespace {
 
 Table table_of(const std::vector<std::string>& names, const std::vector<std::vector<double>>& columns) {
@@ -183,4 +183,4 @@ TEST(LocatedTable, ATurnedCameraNeedsThePicture) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::located_table_test

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <random>
 
-namespace twincell::imaging {
+namespace twincell::imaging::locating_cost_test {
 namespace {
 
 LocatePrecision row(int sweeps, double rms, double ms, double recall = 1) {
@@ -93,4 +93,4 @@ TEST(LocatingCost, FitsAreAtTheBoundAndFindersAreNot) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::locating_cost_test

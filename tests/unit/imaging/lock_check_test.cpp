@@ -16,8 +16,9 @@
 #include "imaging/phase/phases_of_times.hpp"
 #include "tests/support/complaint.hpp"
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::lock_check_test {
+
+using namespace imaging;
 
 namespace {
 
@@ -326,3 +327,5 @@ TEST(LockCheck, UncheckableCasesAreReported) {
   check_lock_by_bed(table, {.heights = std::vector<double>(50, 3.0), .repeats = {}});
   EXPECT_NE(table.not_checked.find("less than three cycles"), std::string::npos) << table.not_checked;
 }
+
+}  // namespace twincell::lock_check_test

@@ -8,8 +8,9 @@
 #include <random>
 #include <vector>
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::min_cut_test {
+
+using namespace imaging;
 
 TEST(MinCut, IsTheCheapestOfAllChoices) {
   // Against all 2^8 choices.
@@ -53,3 +54,5 @@ TEST(MinCut, AmongEqualCutsTheLargestIsTaken) {
   cut.stay_and_move(1, 2, 2);  // node 2 gains by moving only if node 1 moves too, which costs nothing
   EXPECT_EQ(cut.solve(), (std::vector<std::uint8_t>{1, 1, 1}));
 }
+
+}  // namespace twincell::min_cut_test

@@ -7,7 +7,7 @@
 
 #include "imaging/track/link_detections.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::missing_beads_test {
 namespace {
 
 /// The sentence about frames with these numbers of beads.
@@ -87,4 +87,4 @@ TEST(TracksOfAFilm, AFifthMoreThanBeadsIsNoted) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::missing_beads_test

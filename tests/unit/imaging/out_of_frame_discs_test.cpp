@@ -13,7 +13,7 @@
 #include "imaging/locate/locator.hpp"
 #include "imaging/refine/missed_discs.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::out_of_frame_discs_test {
 namespace {
 
 constexpr double kRadius = 7.5;
@@ -104,4 +104,4 @@ TEST(OutOfFrameDiscs, ABeadInACornerIsNoWall) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::out_of_frame_discs_test

@@ -9,8 +9,9 @@
 
 #include "core/constants.hpp"
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::out_of_lock_test {
+
+using namespace imaging;
 
 namespace {
 
@@ -54,3 +55,5 @@ TEST(OutOfLock, SingleMisreadHeightsAndHiddenPhasesAreNone) {
   EXPECT_TRUE(stretches_out_of_lock(std::vector<double>(100, kNaN), 20).empty());
   EXPECT_TRUE(stretches_out_of_lock({}, 20).empty());
 }
+
+}  // namespace twincell::out_of_lock_test

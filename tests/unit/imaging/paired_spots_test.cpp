@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace twincell::imaging {
+namespace twincell::imaging::paired_spots_test {
 namespace {
 
 constexpr double kBead = 20;
@@ -64,4 +64,4 @@ TEST(SpotPairs, BeadsThatTouchAreNone) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::paired_spots_test

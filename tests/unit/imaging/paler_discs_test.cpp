@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace twincell::imaging {
+namespace twincell::imaging::paler_discs_test {
 namespace {
 
 Detection at(double x, double y, Verdict verdict = Verdict::bead, double darkness = 0.38) {
@@ -40,4 +40,4 @@ TEST(PalerDiscs, HaveOneDarkness) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::paler_discs_test

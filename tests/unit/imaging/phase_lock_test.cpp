@@ -19,8 +19,9 @@
 #include "tests/support/complaint.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::phase_lock_test {
+
+using namespace imaging;
 
 namespace {
 
@@ -410,3 +411,5 @@ TEST(FoundPhase, ABedAtRestIsSaidToBeAtRest) {
             }).find("at rest"),
             std::string::npos);
 }
+
+}  // namespace twincell::phase_lock_test

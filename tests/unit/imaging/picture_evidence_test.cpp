@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace twincell::imaging {
+namespace twincell::imaging::picture_evidence_test {
 namespace {
 
 constexpr double kRadius = 15, kNoise = 1, kOutside = 2.5;
@@ -167,4 +167,4 @@ TEST(PictureEvidence, NoiseLevelIsThatOfThePicture) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::picture_evidence_test

@@ -9,8 +9,9 @@
 #include <random>
 #include <vector>
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::plate_phases_test {
+
+using namespace imaging;
 
 namespace {
 
@@ -143,3 +144,5 @@ TEST(PlatePhases, FramesBeforeTheShakerStartsHaveNoPhase) {
       EXPECT_EQ(table->at(rest + 45).phase, 5) << rest << ' ' << noise;
     }
 }
+
+}  // namespace twincell::plate_phases_test

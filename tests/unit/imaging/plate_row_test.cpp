@@ -5,7 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace twincell::imaging {
+namespace twincell::imaging::plate_row_test {
 namespace {
 
 constexpr int kWidth = 288, kHeight = 200;
@@ -51,4 +51,4 @@ TEST(PlateRow, ATurnedPlateHasTheHeightOfItsLowerPart) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::plate_row_test

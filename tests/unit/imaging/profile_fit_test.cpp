@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace twincell::imaging {
+namespace twincell::imaging::profile_fit_test {
 namespace {
 
 /// Superposed plain discs, given as (radius, level), with blurred edges.
@@ -83,4 +83,4 @@ TEST(DiscProfile, AFaintRingIsTheRim) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::profile_fit_test

@@ -12,8 +12,9 @@
 
 #include "imaging/phase/phases_of_repeated_frames.hpp"
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::repeated_frames_test {
+
+using namespace imaging;
 
 namespace {
 
@@ -109,3 +110,5 @@ TEST(RepeatedFrames, APartThatIsInTheStackTwiceIsFound) {
   for (unsigned f = 0; f < 60; ++f) periodic.add(bar(sine(f % 20, 20)));
   EXPECT_EQ(periodic.copied(), "") << "a film without noise repeats its cycles";
 }
+
+}  // namespace twincell::repeated_frames_test

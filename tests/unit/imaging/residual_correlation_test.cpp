@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
-namespace twincell::imaging {
+namespace twincell::imaging::residual_correlation_test {
 namespace {
 
 constexpr double kRadius = 9, kWidth = 0.9, kDeviation = 0.02;
@@ -127,4 +127,4 @@ TEST(ResidualCorrelation, FewOrHiddenDiscsGiveNone) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::residual_correlation_test

@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-namespace twincell::imaging {
+namespace twincell::imaging::residual_illumination_test {
 namespace {
 
 constexpr double kNoise = 0.01;  // standard deviation of a tile's mean
@@ -106,4 +106,4 @@ TEST(ResidualIllumination, DoesNotExtrapolate) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::residual_illumination_test

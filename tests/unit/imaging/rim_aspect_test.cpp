@@ -9,7 +9,7 @@
 
 #include "tests/unit/imaging/outlines.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::rim_aspect_test {
 namespace {
 
 using namespace outlines;
@@ -83,4 +83,4 @@ TEST(RimAspect, OfTooFewDiscsIsAbsent) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::rim_aspect_test

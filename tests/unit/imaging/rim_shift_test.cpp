@@ -11,7 +11,7 @@
 
 #include "tests/unit/imaging/outlines.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::rim_shift_test {
 namespace {
 
 using namespace outlines;
@@ -117,4 +117,4 @@ TEST(RimShift, ZeroForHiddenRims) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::rim_shift_test

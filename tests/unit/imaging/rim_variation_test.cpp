@@ -9,7 +9,7 @@
 
 #include "tests/unit/imaging/outlines.hpp"
 
-namespace twincell::imaging {
+namespace twincell::imaging::rim_variation_test {
 namespace {
 
 using namespace outlines;
@@ -99,4 +99,4 @@ TEST(RimVariation, IsThatOfTheLeastRoundSize) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::rim_variation_test

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace twincell::imaging {
+namespace twincell::imaging::settings_choice_test {
 namespace {
 
 TriedSettings tried(double diameter, double evidence, std::size_t beads, std::vector<double> others = {}) {
@@ -139,4 +139,4 @@ TEST(SettingsChoice, RunnerUpHasOtherDiscs) {
 }
 
 }  // namespace
-}  // namespace twincell::imaging
+}  // namespace twincell::imaging::settings_choice_test

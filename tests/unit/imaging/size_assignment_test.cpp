@@ -7,8 +7,9 @@
 #include <numbers>
 #include <vector>
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::size_assignment_test {
+
+using namespace imaging;
 
 namespace {
 
@@ -70,3 +71,5 @@ TEST(BlurOf, IsThatOfTheEdges) {
   // Discs of half the darkness have the same blur.
   EXPECT_NEAR(blur_of(0.5 * discs({{40, 40, 0.5, 25}}, 1.5).darkness), 1.5, 0.3);
 }
+
+}  // namespace twincell::size_assignment_test

@@ -8,8 +8,9 @@
 #include <string>
 #include <vector>
 
-using namespace twincell;
-using namespace twincell::imaging;
+namespace twincell::votes_test {
+
+using namespace imaging;
 
 namespace {
 
@@ -145,3 +146,5 @@ TEST(Tops, OfEqualOnesTheFirst) {
 }
 
 }  // namespace
+
+}  // namespace twincell::votes_test

@@ -10,7 +10,7 @@
 
 #include "reproduce/gas.hpp"
 
-namespace twincell::reproduce {
+namespace twincell::reproduce::excess_test {
 namespace {
 
 /// Adds the points of one choice as the study stores them. \param excess of T_bar_z over Table III by W
@@ -105,4 +105,4 @@ TEST(Excess, DefinitionsAndFirstCyclesAreJudgedFromTheirRuns) {
 }
 
 }  // namespace
-}  // namespace twincell::reproduce
+}  // namespace twincell::reproduce::excess_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace twincell::reproduce {
+namespace twincell::reproduce::exponent_error_test {
 namespace {
 
 /// y = x^alpha at x = 1, 2, 4, with `scatter` added to ln y at x = 2 and errors of `relative` (half the 95 %
@@ -51,4 +51,4 @@ TEST(ExponentError, NeedsNoIntervalOfAPoint) {
 }
 
 }  // namespace
-}  // namespace twincell::reproduce
+}  // namespace twincell::reproduce::exponent_error_test

@@ -12,7 +12,7 @@
 #include "reproduce/reproduction.hpp"
 #include "tests/support/figure_rules.hpp"
 
-namespace twincell::reproduce {
+namespace twincell::reproduce::figures_test {
 namespace {
 
 const std::filesystem::path kStored = std::filesystem::path(TWINCELL_SOURCE_DIR) / "docs/reproduce";
@@ -166,4 +166,4 @@ TEST(PaperFigures, Fig10NamesTheDecidingSystemAndCountsThePointsAtTheirCap) {
 }
 
 }  // namespace
-}  // namespace twincell::reproduce
+}  // namespace twincell::reproduce::figures_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace twincell::reproduce {
+namespace twincell::reproduce::papers_page_test {
 namespace {
 
 const std::string kOne = R"({"title": "Fortini & Huang 2015, Fig. 4", "complete": false, "core_minutes": 12.3,
@@ -77,4 +77,4 @@ TEST(PapersPage, ShowsFiguresAndConditionsBelowTheTable) {
 }
 
 }  // namespace
-}  // namespace twincell::reproduce
+}  // namespace twincell::reproduce::papers_page_test

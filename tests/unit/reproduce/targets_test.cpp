@@ -9,7 +9,7 @@
 #include "reproduce/p1_sweep.hpp"
 #include "reproduce/reproduction.hpp"
 
-namespace twincell::reproduce {
+namespace twincell::reproduce::targets_test {
 namespace {
 
 TEST(Targets, ABedThatRearrangedOnceCameToRest) {
@@ -100,4 +100,4 @@ TEST(Targets, OfSeveralHeightsTheOneThatMeetsMostCounts) {
 }
 
 }  // namespace
-}  // namespace twincell::reproduce
+}  // namespace twincell::reproduce::targets_test

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace twincell::reproduce {
+namespace twincell::reproduce::verdict_test {
 namespace {
 
 constexpr double kTiny = 1e-12;
@@ -181,4 +181,4 @@ TEST(Trend, IsThatOfTheEndsUnlessTheSeriesClearlyTurns) {
 }
 
 }  // namespace
-}  // namespace twincell::reproduce
+}  // namespace twincell::reproduce::verdict_test

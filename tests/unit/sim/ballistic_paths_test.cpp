@@ -9,7 +9,7 @@
 #include <cmath>
 #include <random>
 
-namespace twincell::sim {
+namespace twincell::sim::ballistic_paths_test {
 namespace {
 
 constexpr int kBeads = 13;       // not a multiple of a vector length
@@ -142,4 +142,4 @@ TEST(BallisticPaths, DoNotWaitForImagesThatPassAboveOrBelow) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::ballistic_paths_test

@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-namespace twincell::sim {
+namespace twincell::sim::cell_grid_test {
 namespace {
 
 struct Case {
@@ -168,4 +168,4 @@ TEST(CellGrid, LargeBeadsDoNotMakeSmallOnesMany) {  // counts candidates per bea
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::cell_grid_test

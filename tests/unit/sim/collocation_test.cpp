@@ -13,7 +13,7 @@
 #include "sim/contact/stage_polynomial.hpp"
 #include "sim/kernels/kernels.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::collocation_test {
 namespace {
 
 constexpr std::size_t kNormal = 0, kSmooth = 0, kRough = 1;  // positions in laws/axes.hpp
@@ -177,4 +177,4 @@ TEST(Collocation, StepsHaveTheSameBitsOnEveryVectorUnit) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::collocation_test

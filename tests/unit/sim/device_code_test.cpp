@@ -11,7 +11,7 @@
 #include "sim/device/device_kernel.hpp"
 #include "sim/device/device_laws.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::device_code_test {
 namespace {
 
 std::size_t count(const std::string& text, const std::string& word) {
@@ -60,4 +60,4 @@ TEST_F(DeviceCode, ThreadsWaitForEachOther) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::device_code_test

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace twincell::sim {
+namespace twincell::sim::driven_work_test {
 namespace {
 
 TEST(DrivenWork, ReturnsItsMeasuredPoints) {
@@ -54,4 +54,4 @@ TEST(DrivenWork, DeeperBedsSaveLess) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::driven_work_test

@@ -6,7 +6,7 @@
 
 #include <random>
 
-namespace twincell::sim {
+namespace twincell::sim::event_queue_test {
 namespace {
 
 using Kind = Event::Kind;
@@ -51,4 +51,4 @@ TEST(EventQueue, PartnersOfAChangedBeadAreRescheduled) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::event_queue_test

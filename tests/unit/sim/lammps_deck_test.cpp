@@ -10,7 +10,7 @@
 #include "sim/run/simulation.hpp"
 #include "sim/scene/read_scene.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::lammps_deck_test {
 namespace {
 
 const std::string kScene =
@@ -74,4 +74,4 @@ TEST(LammpsDeck, FromAFrameEndsWithTheCyclesOfTheScene) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::lammps_deck_test

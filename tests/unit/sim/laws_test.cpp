@@ -6,7 +6,7 @@
 
 #include "sim/laws/axes.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::laws_test {
 namespace {
 
 /// A law with the members of NormalLaw and no other: a force that is k delta whatever the speed.
@@ -68,4 +68,4 @@ TEST(NormalLaws, AreElasticWithoutDamping) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::laws_test

@@ -10,7 +10,7 @@
 #include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::plan_warnings_test {
 namespace {
 
 bool warns_of_lost_energy(const std::string& contact, const std::string& time = "") {
@@ -43,4 +43,4 @@ TEST(PlanWarnings, OfEnergyThatOnlyStepsTake) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::plan_warnings_test

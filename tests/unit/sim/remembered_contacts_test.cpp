@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-namespace twincell::sim {
+namespace twincell::sim::remembered_contacts_test {
 namespace {
 
 struct Contact {
@@ -51,4 +51,4 @@ TEST(RememberedContacts, NoneAreRemembered) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::remembered_contacts_test

@@ -8,7 +8,7 @@
 #include "sim/scene/scene.hpp"
 #include "tests/support/key_table_checks.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::scene_keys_test {
 namespace {
 
 /// The tables of walls have the keys of [contact].
@@ -80,4 +80,4 @@ TEST(SceneKeys, StatedDefaultsChangeNothingAndExamplesDo) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::scene_keys_test

@@ -19,7 +19,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::start_test {
 namespace {
 
 const std::string kFlat = "preset = \"fortini-huang-2015\"\n[drive]\ngamma = 1.0\n";
@@ -705,4 +705,4 @@ TEST(Tracers, AreOneAColumnOtherwise) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::start_test

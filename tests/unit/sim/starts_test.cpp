@@ -12,7 +12,7 @@
 #include "sim/start/start.hpp"
 #include "tests/support/complaint.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::starts_test {
 namespace {
 
 Scene scene_with(const StartRow& start, const std::string& more = "") {
@@ -66,4 +66,4 @@ TEST(Starts, ConditionsFollowTheScene) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::starts_test

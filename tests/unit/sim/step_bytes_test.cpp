@@ -4,7 +4,7 @@
 #include "sim/run/simulation.hpp"
 #include "sim/scene/read_scene.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::step_bytes_test {
 namespace {
 
 StageTimes::Row settled(const std::string& beads) {
@@ -39,4 +39,4 @@ TEST(StepBytes, UnlikeBeadsMoveMore) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::step_bytes_test

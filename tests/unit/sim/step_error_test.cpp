@@ -11,7 +11,7 @@
 #include "sim/scene/make_plan.hpp"
 #include "sim/scene/read_scene.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::step_error_test {
 namespace {
 
 struct Explained {
@@ -192,4 +192,4 @@ TEST(StepError, IsOfTheUsualBeadAndSaysSo) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::step_error_test

@@ -9,7 +9,7 @@
 
 #include "sim/scene/read_scene.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::unit_doubts_test {
 namespace {
 
 /// The doubts about a usual cell in which some keys differ.
@@ -56,4 +56,4 @@ TEST(UnitDoubts, OfFrequenciesWithoutAScale) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::unit_doubts_test

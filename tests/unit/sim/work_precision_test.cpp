@@ -10,7 +10,7 @@
 
 #include "sim/laws/linear_collision.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::work_precision_test {
 namespace {
 
 /// Exponent p of error ~ n^-p, from two values of n.
@@ -172,4 +172,4 @@ TEST(WorkPrecision, EqualAccuracyIsOfEverythingMeasured) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::work_precision_test

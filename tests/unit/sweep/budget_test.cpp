@@ -9,7 +9,7 @@
 #include "sweep/store.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::sweep {
+namespace twincell::sweep::budget_test {
 namespace {
 
 constexpr double kBeads = 24;
@@ -80,4 +80,4 @@ TEST(Budget, IsAnnouncedIfItIsMinutes) {
 }
 
 }  // namespace
-}  // namespace twincell::sweep
+}  // namespace twincell::sweep::budget_test

@@ -14,7 +14,7 @@
 #include "sweep/store.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::sweep {
+namespace twincell::sweep::conditions_test {
 namespace {
 
 using nlohmann::json;
@@ -79,4 +79,4 @@ TEST(SweepConditions, AbsentNumbersAreNull) {
 }
 
 }  // namespace
-}  // namespace twincell::sweep
+}  // namespace twincell::sweep::conditions_test

@@ -14,7 +14,7 @@
 #include "sweep/store.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::sweep {
+namespace twincell::sweep::farm_test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -108,4 +108,4 @@ TEST_F(Farm, CostIsUnknownWhereAResultDoesNotStateIt) {
 }
 
 }  // namespace
-}  // namespace twincell::sweep
+}  // namespace twincell::sweep::farm_test

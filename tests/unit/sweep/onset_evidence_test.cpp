@@ -9,7 +9,7 @@
 
 #include "sweep/onset.hpp"
 
-namespace twincell::sweep {
+namespace twincell::sweep::onset_evidence_test {
 namespace {
 
 /// An onset whose likelihood is a normal law.
@@ -64,4 +64,4 @@ TEST(OnsetEvidence, GrowsInProportionToTheRuns) {
 }
 
 }  // namespace
-}  // namespace twincell::sweep
+}  // namespace twincell::sweep::onset_evidence_test

@@ -4,7 +4,7 @@
 #include "sweep/plan.hpp"
 #include "tests/support/key_table_checks.hpp"
 
-namespace twincell::sweep {
+namespace twincell::sweep::plan_keys_test {
 namespace {
 
 TEST(PlanKeys, ExamplesAreReadAndWhatIsOutOfRangeIsRefused) {
@@ -28,4 +28,4 @@ TEST(PlanKeys, StatedDefaultsChangeNothing) {
 }
 
 }  // namespace
-}  // namespace twincell::sweep
+}  // namespace twincell::sweep::plan_keys_test

@@ -7,7 +7,7 @@
 #include "tests/support/complaint.hpp"
 #include "tests/support/figure_rules.hpp"
 
-namespace twincell::sweep {
+namespace twincell::sweep::results_figure_test {
 namespace {
 
 const std::string kGrid = R"({"points": [
@@ -79,4 +79,4 @@ TEST(ResultsFigure, WrongNamesAreRefusedWithTheRightOnes) {
 }
 
 }  // namespace
-}  // namespace twincell::sweep
+}  // namespace twincell::sweep::results_figure_test

@@ -11,7 +11,7 @@
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::sweep {
+namespace twincell::sweep::sweep_store_test {
 namespace {
 
 constexpr const char* kResult = R"({"id":"a","results":{"s_b":{"value":0.25}},"computed":{"seconds":1.5}})";
@@ -111,4 +111,4 @@ TEST(SweepPlan, AValueIsNotNamedTwiceInOtherDigits) {
 }
 
 }  // namespace
-}  // namespace twincell::sweep
+}  // namespace twincell::sweep::sweep_store_test

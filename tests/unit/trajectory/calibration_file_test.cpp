@@ -13,7 +13,7 @@
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using namespace twincell;
+namespace twincell::calibration_file_test {
 
 namespace {
 
@@ -200,3 +200,5 @@ TEST(CalibrationFile, BoundViolationsNameTheCalibrationFile) {
     EXPECT_NE(std::string(e.what()).find("scene.toml:2:8: calibration.from"), std::string::npos) << e.what();
   }
 }
+
+}  // namespace twincell::calibration_file_test

@@ -12,7 +12,7 @@
 #include "trajectory/drive.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-namespace twincell {
+namespace twincell::drive_ramp_test {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
@@ -237,4 +237,4 @@ TEST(DriveMotionGroup, RampAndHorizontalMotionSurviveAFile) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::drive_ramp_test

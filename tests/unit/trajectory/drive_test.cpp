@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-namespace twincell {
+namespace twincell::drive_test {
 namespace {
 
 // MODEL: omega = 1 makes A = Gamma and K_m = Gamma^2; W of the second paper is K_m.
@@ -116,4 +116,4 @@ TEST(Drive, PeakFallOfTwoHarmonics) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::drive_test

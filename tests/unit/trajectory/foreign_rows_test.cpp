@@ -14,7 +14,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "trajectory/formats/h5md_file.hpp"
 
-namespace twincell {
+namespace twincell::foreign_rows_test {
 namespace {
 
 constexpr int kFrames = 12;
@@ -116,4 +116,4 @@ TEST(ForeignRows, ABoxThatChangesIsRefused) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::foreign_rows_test

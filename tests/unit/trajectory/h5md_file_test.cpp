@@ -13,7 +13,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "trajectory/recorded_motion.hpp"
 
-namespace twincell {
+namespace twincell::h5md_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -530,4 +530,4 @@ TEST(H5mdFile, UnwritablePlaces) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::h5md_file_test

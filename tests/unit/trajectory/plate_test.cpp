@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-using namespace twincell;
+namespace twincell::plate_test {
 
 namespace {
 
@@ -63,3 +63,5 @@ TEST(PlateHeight, RestsWhereTheDriveMovesAndTheStoredHeightIsZero) {
     EXPECT_FALSE(plate_rests(info, frame));
   }
 }
+
+}  // namespace twincell::plate_test

@@ -13,7 +13,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "trajectory/unit_keys.hpp"
 
-using namespace twincell;
+namespace twincell::quantities_test {
 
 namespace {
 
@@ -235,3 +235,5 @@ TEST(Quantities, AnAssignmentDisplacesOtherSpellings) {
 }
 
 }  // namespace
+
+}  // namespace twincell::quantities_test

@@ -10,7 +10,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "trajectory/drive.hpp"
 
-namespace twincell {
+namespace twincell::read_motion_record_test {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
@@ -292,4 +292,4 @@ TEST(RecordedMotion, RecordsThatCannotDriveAreRefused) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::read_motion_record_test

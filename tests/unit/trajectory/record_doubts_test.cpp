@@ -11,7 +11,7 @@
 
 #include "core/constants.hpp"
 
-namespace twincell {
+namespace twincell::record_doubts_test {
 namespace {
 
 /// Ten cycles of a sine of amplitude 1 as an instrument shows them.
@@ -74,4 +74,4 @@ TEST(RecordDoubts, GravityTellsTheUnit) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::record_doubts_test

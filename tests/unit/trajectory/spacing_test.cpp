@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace twincell {
+namespace twincell::spacing_test {
 namespace {
 
 std::vector<Vec3> square_lattice(int side, double spacing) {
@@ -61,4 +61,4 @@ TEST(Spacing, MatchesTheCountOverAllPairs) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::spacing_test

@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 
-namespace twincell {
+namespace twincell::tracking_record_test {
 namespace {
 
 TrajectoryInfo tracked(const std::string& report) {
@@ -94,4 +94,4 @@ TEST(TrackingRecord, TheCheckOfTheDriveComesBack) {
 }
 
 }  // namespace
-}  // namespace twincell
+}  // namespace twincell::tracking_record_test

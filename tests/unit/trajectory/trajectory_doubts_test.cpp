@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-namespace twincell {
+namespace twincell::trajectory_doubts_test {
 namespace {
 
 /// Five rows of ten touching beads on a plate at A sin(omega t), `phases` frames per cycle, for two cycles.
@@ -124,4 +124,4 @@ TEST(TrajectoryDoubts, OnlyTheFramesThatAreAskedForAreRead) {
   EXPECT_NE(doubts_of(bed, 41).size(), 0U);
 }
 
-}  // namespace twincell
+}  // namespace twincell::trajectory_doubts_test

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-using namespace twincell;
+namespace twincell::trajectory_test {
 
 TEST(TrajectoryInfo, BeadsWithoutStoredSizeHaveTheUnits) {
   EXPECT_EQ(radius_of({}, 3), 0.5);
@@ -28,3 +28,5 @@ TEST(TrajectoryInfo, GravityIsThatOfTheRun) {
   info.drive->ramp.emplace();
   EXPECT_EQ(gravity_of(info), 0.5) << "a ramp has no one Gamma";
 }
+
+}  // namespace twincell::trajectory_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-using namespace twincell;
+namespace twincell::wrapped_positions_test {
 
 namespace {
 
@@ -49,3 +49,5 @@ TEST(PeriodCounter, GoesOnFromTheLastKnownPlace) {
 }
 
 }  // namespace
+
+}  // namespace twincell::wrapped_positions_test

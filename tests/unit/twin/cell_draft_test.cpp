@@ -12,7 +12,7 @@
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::twin {
+namespace twincell::twin::cell_draft_test {
 namespace {
 
 /// 12 px per bead, walls 120 px apart, plate at row 200 with A = 18 px, 20 frames per cycle.
@@ -263,4 +263,4 @@ TEST(CellDraft, ANewlineInANameStaysInItsComment) {
 }
 
 }  // namespace
-}  // namespace twincell::twin
+}  // namespace twincell::twin::cell_draft_test

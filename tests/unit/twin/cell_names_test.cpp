@@ -8,7 +8,7 @@
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::twin {
+namespace twincell::twin::cell_names_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -106,4 +106,4 @@ TEST(CellNames, NumbersThatDoNotFitAreRefused) {
 }
 
 }  // namespace
-}  // namespace twincell::twin
+}  // namespace twincell::twin::cell_names_test

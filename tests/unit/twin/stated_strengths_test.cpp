@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace twincell::twin {
+namespace twincell::twin::stated_strengths_test {
 namespace {
 
 // A plate at omega^2/g = 4.37, as of a film with strengths 0.8, 1.4, 2.2.
@@ -42,4 +42,4 @@ TEST(Strengths, ThoseOfOtherStacksAreNoted) {
 }
 
 }  // namespace
-}  // namespace twincell::twin
+}  // namespace twincell::twin::stated_strengths_test

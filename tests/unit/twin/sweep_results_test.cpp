@@ -12,7 +12,7 @@
 #include "tests/support/put_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace twincell::twin {
+namespace twincell::twin::sweep_results_test {
 namespace {
 
 constexpr const char* kResults = R"({"format": "twincell sweep 1", "plan": "", "open": 0, "points": [
@@ -245,4 +245,4 @@ TEST(SweepResults, ASweepCountsOnceAndHasAPlaceInTheDiagram) {
                              "no point of the sweep has a place in the diagram", "results of its plan");
 }
 
-}  // namespace twincell::twin
+}  // namespace twincell::twin::sweep_results_test

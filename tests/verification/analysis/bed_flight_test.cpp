@@ -13,8 +13,9 @@
 #include "tests/support/rigid_bed.hpp"
 #include "tests/support/validation.hpp"
 
-using namespace twincell;
-using namespace twincell::analysis;
+namespace twincell::bed_flight_test {
+
+using namespace analysis;
 
 namespace {
 
@@ -239,3 +240,5 @@ TEST(BedFlight, ReboundingBead) {
       {"V5.17", "flight of a bead on its orbit of period 1, t0", kTurn, 0.05 * kTurn, "closed form"},
       measured(film));
 }
+
+}  // namespace twincell::bed_flight_test

@@ -10,8 +10,9 @@
 #include "tests/support/rigid_bed.hpp"
 #include "tests/support/validation.hpp"
 
-using namespace twincell;
-using namespace twincell::analysis;
+namespace twincell::centre_of_mass_test {
+
+using namespace analysis;
 
 TEST(CentreOfMass, BouncingRigidBed) {
   const test::RigidBed bed{.gamma = 1.5, .columns = 10, .rows = 4, .phases = 40, .cycles = 6};
@@ -103,3 +104,5 @@ TEST(CentreOfMass, WeighsMassesAndSkipsEmptySlots) {
   frame.id = {-1, -1, -1};
   EXPECT_TRUE(std::isnan(centre_of_mass_height(frame, {})));
 }
+
+}  // namespace twincell::centre_of_mass_test

@@ -10,7 +10,7 @@
 #include "tests/support/known_beds.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::test {
+namespace twincell::test::contacts_and_cells_test {
 namespace {
 
 constexpr int kColumns = 12, kRows = 14;
@@ -151,4 +151,4 @@ TEST(VoronoiArea, OfAPlasticallyShearedLatticeIsUnchanged) {
       values_of(t, "voronoi_area")[0]);
 }
 
-}  // namespace twincell::test
+}  // namespace twincell::test::contacts_and_cells_test

@@ -15,7 +15,7 @@
 #include "analysis/observable/observable.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::analysis {
+namespace twincell::analysis::coverage_test {
 namespace {
 
 using Random = std::mt19937_64;
@@ -762,4 +762,4 @@ TEST(Coverage, EveryResultWithAnInterval) {
 }
 
 }  // namespace
-}  // namespace twincell::analysis
+}  // namespace twincell::analysis::coverage_test

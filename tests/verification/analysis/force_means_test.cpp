@@ -11,7 +11,7 @@
 #include "tests/support/validation.hpp"
 #include "trajectory/bed_forces.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::force_means_test {
 namespace {
 
 constexpr int kBeads = 60;
@@ -128,4 +128,4 @@ TEST(ForceMeans, AreStoredOnlyWithContacts) {
   EXPECT_FALSE(run.trajectory_info().columns.force_mean);
 }
 
-}  // namespace twincell::sim
+}  // namespace twincell::sim::force_means_test

@@ -8,8 +8,9 @@
 
 #include "tests/support/validation.hpp"
 
-using namespace twincell;
-using namespace twincell::analysis;
+namespace twincell::granular_temperature_test {
+
+using namespace analysis;
 
 TEST(GranularTemperature, TranslationDropsOutAndTheFiniteSizeFactorStays) {
   std::mt19937_64 generator(11);
@@ -206,3 +207,5 @@ TEST(GranularTemperature, AliasingIsUnknownWithoutStoredTimeMeans) {
   for (const char* name : {"T_g_aliasing", "T_z_aliasing", "T_g_sampling"})
     EXPECT_NE(find_result(results, name).absent.find("not known"), std::string::npos) << name;
 }
+
+}  // namespace twincell::granular_temperature_test

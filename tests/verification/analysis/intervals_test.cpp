@@ -11,7 +11,7 @@
 #include "sim/run/simulation.hpp"
 #include "sim/scene/read_scene.hpp"
 
-namespace twincell::analysis {
+namespace twincell::analysis::intervals_test {
 namespace {
 
 std::vector<Result> results_of(const std::string& scene, const AnalysisOptions& options) {
@@ -82,4 +82,4 @@ TEST(Intervals, HoldTheirValueAndHaveAWidth) {
 }
 
 }  // namespace
-}  // namespace twincell::analysis
+}  // namespace twincell::analysis::intervals_test

@@ -10,8 +10,9 @@
 #include "analysis/order/bond_order.hpp"
 #include "tests/support/validation.hpp"
 
-using namespace twincell;
-using namespace twincell::analysis;
+namespace twincell::order_test {
+
+using namespace analysis;
 
 namespace {
 
@@ -163,3 +164,5 @@ TEST(BondOrder, StructuresOfPerfectLattices) {
   EXPECT_EQ(structure_of(order_of(square, 1.2), centre), Structure::square);
   EXPECT_EQ(structure_of(order_of(square, 1.5), centre), Structure::other);  // diagonals within the cut-off
 }
+
+}  // namespace twincell::order_test

@@ -11,8 +11,9 @@
 #include "tests/support/rigid_bed.hpp"
 #include "tests/support/validation.hpp"
 
-using namespace twincell;
-using namespace twincell::analysis;
+namespace twincell::phase_thresholds_test {
+
+using namespace analysis;
 using test::RigidBed;
 
 namespace {
@@ -189,3 +190,5 @@ TEST(BouncingThreshold, ABedOfPeriodTwoIsAveragedOverAnEvenNumberOfCycles) {
   EXPECT_EQ(s_k.n, 2U);
   EXPECT_NEAR(s_k.values[5] - s_k.values[4], 0.5, 1e-12);
 }
+
+}  // namespace twincell::phase_thresholds_test

@@ -15,7 +15,7 @@
 #include "analysis/motion/convection_field.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::analysis {
+namespace twincell::analysis::rolls_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -115,4 +115,4 @@ TEST(Rolls, WeakRollsAreLeftOut) {
   EXPECT_EQ(count_rolls(blocks, 1e3), 0U);
 }
 
-}  // namespace twincell::analysis
+}  // namespace twincell::analysis::rolls_test

@@ -9,8 +9,9 @@
 
 #include "tests/support/validation.hpp"
 
-using namespace twincell;
-using namespace twincell::analysis;
+namespace twincell::slip_test {
+
+using namespace analysis;
 
 namespace {
 
@@ -205,3 +206,5 @@ TEST(Slip, TheIntervalCoversAlthoughBeadsSlipTogether) {
   test::validate({"V5.5", "coverage, %, of the interval of p_s, rows slipping as one", 95, 2, "binomial"},
                  100.0 * covered / seeds);
 }
+
+}  // namespace twincell::slip_test

@@ -17,8 +17,9 @@
 #include "analysis/order/lattice_orientation.hpp"
 #include "tests/support/validation.hpp"
 
-using namespace twincell;
-using namespace twincell::analysis;
+namespace twincell::spatial_order_test {
+
+using namespace analysis;
 
 namespace {
 
@@ -652,3 +653,5 @@ TEST(Profiles, TheTemperatureOfTheInstantLeavesOutTheCommonMotionOfASlab) {
   EXPECT_EQ(t.values[2], 0);
   EXPECT_NEAR(find_result(results, "T_z_z").values[0], 10, 1e-12);  // with the variance 9 of c
 }
+
+}  // namespace twincell::spatial_order_test

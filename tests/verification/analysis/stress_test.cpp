@@ -13,7 +13,7 @@
 #include "tests/support/known_beds.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::test {
+namespace twincell::test::stress_test {
 namespace {
 
 constexpr int kColumns = 8, kRows = 10;
@@ -316,4 +316,4 @@ TEST(ContactForce, IsAbsentWithoutStoredContacts) {
   }
 }
 
-}  // namespace twincell::test
+}  // namespace twincell::test::stress_test

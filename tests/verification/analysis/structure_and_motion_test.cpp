@@ -10,9 +10,10 @@
 #include "analysis/order/pair_correlation.hpp"
 #include "tests/support/known_beds.hpp"
 
-using namespace twincell;
-using namespace twincell::analysis;
-using namespace twincell::test;
+namespace twincell::structure_and_motion_test {
+
+using namespace analysis;
+using namespace test;
 
 namespace {
 
@@ -265,3 +266,5 @@ TEST(VelocityDistribution, OfFewBeadsHasNoBias) {
   validate_close("a2 of Gaussian velocities", values_of(many, "a2_x")[0], 0, 0.01);
   validate_close("a2 of a uniform distribution", values_of(many, "a2_z")[0], -0.4, 0.005);
 }
+
+}  // namespace twincell::structure_and_motion_test

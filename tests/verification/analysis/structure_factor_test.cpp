@@ -9,7 +9,7 @@
 #include "tests/support/known_beds.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::test {
+namespace twincell::test::structure_factor_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -97,4 +97,4 @@ TEST(StructureFactor, HalfFilledBoxMatchesDensityTransform) {
 }
 
 }  // namespace
-}  // namespace twincell::test
+}  // namespace twincell::test::structure_factor_test

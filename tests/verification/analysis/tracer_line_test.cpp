@@ -10,8 +10,9 @@
 #include "tests/support/rigid_bed.hpp"
 #include "tests/support/validation.hpp"
 
-using namespace twincell;
-using namespace twincell::analysis;
+namespace twincell::tracer_line_test {
+
+using namespace analysis;
 
 namespace {
 
@@ -173,3 +174,5 @@ TEST(DetectionLimits, NoiseOfThatSizeGivesAnSbOfThatSize) {
                   0.03 / std::sqrt(8 * 4) * std::sqrt(19.0 / 20), 1.5e-4, "sigma/sqrt(N_t N_f)"},
                  std::sqrt(sum / seeds));
 }
+
+}  // namespace twincell::tracer_line_test

@@ -10,7 +10,7 @@
 #include "tests/support/known_beds.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::test {
+namespace twincell::test::velocity_autocorrelation_test {
 namespace {
 
 constexpr std::size_t kBeads = 40;
@@ -104,4 +104,4 @@ TEST(VelocityAutocorrelation, IgnoresFramesAtOtherTimes) {
   for (const std::size_t m : {1U, 2U, 4U}) EXPECT_NEAR(c[m], expected[m], 1e-12) << m;
 }
 
-}  // namespace twincell::test
+}  // namespace twincell::test::velocity_autocorrelation_test

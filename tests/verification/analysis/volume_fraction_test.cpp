@@ -8,8 +8,9 @@
 
 #include "tests/support/validation.hpp"
 
-using namespace twincell;
-using namespace twincell::analysis;
+namespace twincell::volume_fraction_test {
+
+using namespace analysis;
 
 namespace {
 
@@ -77,3 +78,5 @@ TEST(VolumeFraction, OfNoBeadsIsAbsent) {
   EXPECT_FALSE(find_result(results, "phi_top").present());
   EXPECT_FALSE(find_result(results, "T_z_volume").present());
 }
+
+}  // namespace twincell::volume_fraction_test

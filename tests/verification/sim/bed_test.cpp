@@ -14,7 +14,7 @@
 #include "tests/support/validation.hpp"
 #include "trajectory/temperature.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::bed_test {
 namespace {
 
 using test::validate;
@@ -339,4 +339,4 @@ TEST(Bed, SmoothBeadsHaveNoSpinColumn) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::bed_test

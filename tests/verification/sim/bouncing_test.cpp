@@ -8,7 +8,7 @@
 #include "tests/support/rigid_bed.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::bouncing_test {
 namespace {
 
 using test::validate;
@@ -145,4 +145,4 @@ TEST(InelasticBead, FliesFromTakeOffToLanding) {  // V4.8: e = 0 by critical dam
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::bouncing_test

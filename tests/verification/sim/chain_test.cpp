@@ -8,7 +8,7 @@
 #include "tests/support/collision.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::chain_test {
 namespace {
 
 using test::validate;
@@ -121,4 +121,4 @@ TEST(Chain, ModesRelax) {  // V4.6: amplitude falls at (eta/m)(1 - cos q), eta =
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::chain_test

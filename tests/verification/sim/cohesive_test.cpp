@@ -11,7 +11,7 @@
 #include "tests/support/collision.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::cohesive_test {
 namespace {
 
 using test::validate;
@@ -95,4 +95,4 @@ TEST(Cohesive, BeadsMoveByStepsOnly) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::cohesive_test

@@ -12,7 +12,7 @@
 #include "tests/support/shaken_bed.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::contact_forces_test {
 TEST(ContactForces, ColumnCarriesTheWeightAbove) {
   for (const int dimension : {2, 3}) {
     const MemoryTrajectory t = column_at_rest(dimension);
@@ -74,4 +74,4 @@ TEST(ContactForces, AddUpToThoseOfTheSolver) {
   }
 }
 
-}  // namespace twincell::sim
+}  // namespace twincell::sim::contact_forces_test

@@ -10,7 +10,7 @@
 
 #include "tests/support/validation.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::gas_test {
 namespace {
 
 using test::validate;
@@ -357,4 +357,4 @@ TEST(CoolingGas, SpheresFollowHaff) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::gas_test

@@ -8,7 +8,7 @@
 #include "tests/support/collision.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::harmonics_test {
 namespace {
 
 using test::validate;
@@ -78,4 +78,4 @@ TEST(Harmonics, BelowLiftOffTheBeadFollowsThePlate) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::harmonics_test

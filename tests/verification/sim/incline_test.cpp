@@ -10,7 +10,7 @@
 #include "tests/support/collision.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::incline_test {
 namespace {
 
 using test::validate;
@@ -173,4 +173,4 @@ TEST(TangentialContact, StiffSpringReversesTheSurface) {  // V2.8: k_t/k_n = m_t
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::incline_test

@@ -13,7 +13,7 @@
 #include "sim/laws/normal/hertz.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::mindlin_test {
 namespace {
 
 using test::validate;
@@ -95,4 +95,4 @@ TEST(Mindlin, StickingImpactsConvergeAtSecondOrder) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::mindlin_test

@@ -10,7 +10,7 @@
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::moving_drive_test {
 namespace {
 
 using test::validate;
@@ -229,4 +229,4 @@ TEST(HorizontalDrive, InPhaseItIsATiltedVibration) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::moving_drive_test

@@ -9,7 +9,7 @@
 #include "tests/support/collision.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::oblique_test {
 namespace {
 
 using test::validate;
@@ -187,4 +187,4 @@ TEST(ChungAndOoi, PairsThatSpin) {  // cases 7, 8
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::oblique_test

@@ -8,7 +8,7 @@
 #include "tests/support/collision.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::one_contact_test {
 namespace {
 
 using test::validate;
@@ -312,4 +312,4 @@ TEST(TangentialContact,
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::one_contact_test

@@ -9,7 +9,7 @@
 #include "tests/support/collision.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::plate_drag_test {
 namespace {
 
 constexpr double kRate = 20;
@@ -40,4 +40,4 @@ TEST(PlateDrag, AFallEndsAtTheTerminalVelocity) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::plate_drag_test

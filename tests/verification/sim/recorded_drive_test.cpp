@@ -13,7 +13,7 @@
 #include "tests/support/validation.hpp"
 #include "trajectory/recorded_motion.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::recorded_drive_test {
 namespace {
 
 using test::validate;
@@ -115,4 +115,4 @@ TEST(RecordedDrive, ARecordedSineGivesTheFlightOfTheSine) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::recorded_drive_test

@@ -9,7 +9,7 @@
 #include "tests/support/collision.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::rolling_test {
 namespace {
 
 using test::validate;
@@ -105,4 +105,4 @@ TEST(Rolling, SpringTurnsWithThePair) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::rolling_test

@@ -21,7 +21,7 @@
 #include "sim/scene/read_scene.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::sliding_test {
 namespace {
 
 using test::validate;
@@ -462,4 +462,4 @@ TEST(DefaultStep, TruncatesFrictionWhereAContactThatPullsBeginsToPush) {
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::sliding_test

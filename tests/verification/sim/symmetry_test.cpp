@@ -15,7 +15,7 @@
 #include "tests/support/collision.hpp"
 #include "tests/support/validation.hpp"
 
-namespace twincell::sim {
+namespace twincell::sim::symmetry_test {
 namespace {
 
 using test::validate;
@@ -282,4 +282,4 @@ TEST(Symmetry, MirrorImagesStayMirrorImages) {  // V4.14
 }
 
 }  // namespace
-}  // namespace twincell::sim
+}  // namespace twincell::sim::symmetry_test

@@ -14,7 +14,7 @@
 #include "imaging/preprocess/straight_bars.hpp"
 #include "tests/zoo/imaging/kinds.hpp"
 
-namespace twincell::zoo {
+namespace twincell::zoo::bars_test {
 namespace {
 
 /// A bar from a to b.
@@ -198,4 +198,4 @@ TEST(BarsOnly, ThePlateIsFollowed) {
 }
 
 }  // namespace
-}  // namespace twincell::zoo
+}  // namespace twincell::zoo::bars_test

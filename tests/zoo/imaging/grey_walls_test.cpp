@@ -21,7 +21,7 @@
 #include "tests/support/one_picture.hpp"
 #include "tests/zoo/imaging/kinds.hpp"
 
-namespace twincell::zoo {
+namespace twincell::zoo::grey_walls_test {
 namespace {
 
 /// A bed on a plate between two walls, all as wide as two beads and of one share of the light.
@@ -216,4 +216,4 @@ TEST(GlossyBeads, WithoutBodiesAreNotTakenForSmallBeadsInSilence) {
 }
 
 }  // namespace
-}  // namespace twincell::zoo
+}  // namespace twincell::zoo::grey_walls_test

@@ -14,7 +14,7 @@
 #include "tests/support/one_picture.hpp"
 #include "tests/zoo/imaging/kinds.hpp"
 
-namespace twincell::zoo {
+namespace twincell::zoo::intruder_test {
 namespace {
 
 struct Found {
@@ -123,4 +123,4 @@ TEST(TwoLayers, AreFoundInADenseProjection) {
 }
 
 }  // namespace
-}  // namespace twincell::zoo
+}  // namespace twincell::zoo::intruder_test

@@ -9,7 +9,7 @@
 #include "imaging/locate/locator.hpp"
 #include "tests/zoo/imaging/kinds.hpp"
 
-namespace twincell::zoo {
+namespace twincell::zoo::overlapping_test {
 namespace {
 
 std::vector<imaging::Detection> beads_of(const cv::Mat1b& picture, double diameter, const char* method) {
@@ -91,4 +91,4 @@ TEST(Overlapping, OneLayerIsLocatedAsByTheExactFit) {
 }
 
 }  // namespace
-}  // namespace twincell::zoo
+}  // namespace twincell::zoo::overlapping_test

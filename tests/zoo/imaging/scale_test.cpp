@@ -9,7 +9,7 @@
 #include "tests/support/one_picture.hpp"
 #include "tests/zoo/imaging/kinds.hpp"
 
-namespace twincell::zoo {
+namespace twincell::zoo::scale_test {
 namespace {
 
 /// The refiner for a picture whose cell states `diameter` px per sigma.
@@ -47,4 +47,4 @@ TEST(CellsOfAScale, RefuseAnotherPolarityAndAnotherSize) {
 }
 
 }  // namespace
-}  // namespace twincell::zoo
+}  // namespace twincell::zoo::scale_test

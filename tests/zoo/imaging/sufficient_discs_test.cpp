@@ -6,7 +6,7 @@
 #include "imaging/settings/auto_configuration.hpp"
 #include "tests/zoo/imaging/kinds.hpp"
 
-namespace twincell::zoo {
+namespace twincell::zoo::sufficient_discs_test {
 namespace {
 
 imaging::SettingsChoice choice_on(const Exhibit& exhibit) {
@@ -50,4 +50,4 @@ TEST(SufficientDiscs, AreNotTheMiddlesOfTheBeadsOfACrystal) {
 }
 
 }  // namespace
-}  // namespace twincell::zoo
+}  // namespace twincell::zoo::sufficient_discs_test

@@ -13,7 +13,7 @@
 #include "imaging/locate/locator.hpp"
 #include "tests/zoo/imaging/kinds.hpp"
 
-namespace twincell::zoo {
+namespace twincell::zoo::texture_test {
 namespace {
 
 /// A smooth random field with standard deviation 1. \param length_px of the Gaussian that smooths it; 0: none
@@ -84,4 +84,4 @@ TEST(Texture, StatedErrorsRemainTooSmallForSmallTouchingBeadsAndWideTexture) {
 }
 
 }  // namespace
-}  // namespace twincell::zoo
+}  // namespace twincell::zoo::texture_test

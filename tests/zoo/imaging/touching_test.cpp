@@ -12,7 +12,7 @@
 #include "tests/support/one_picture.hpp"
 #include "tests/zoo/imaging/kinds.hpp"
 
-namespace twincell::zoo {
+namespace twincell::zoo::touching_test {
 namespace {
 
 constexpr int kSide = 170;
@@ -63,4 +63,4 @@ TEST(Touching, ACrystalOfPlainDiscsWithGapsIsNone) {
 }
 
 }  // namespace
-}  // namespace twincell::zoo
+}  // namespace twincell::zoo::touching_test

@@ -18,7 +18,7 @@
 #include "imaging/settings/settings_doubts.hpp"
 #include "tests/zoo/imaging/kinds.hpp"
 
-namespace twincell::zoo {
+namespace twincell::zoo::vacancies_test {
 namespace {
 
 /// Side of a picture that is twenty beads wide, px; of large beads, fewer suffice.
@@ -89,4 +89,4 @@ TEST(Vacancies, TakenForBeadsAreDoubted) {
 }
 
 }  // namespace
-}  // namespace twincell::zoo
+}  // namespace twincell::zoo::vacancies_test

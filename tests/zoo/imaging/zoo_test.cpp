@@ -22,7 +22,7 @@
 #include "tests/support/one_picture.hpp"
 #include "tests/zoo/imaging/kinds.hpp"
 
-namespace twincell::zoo {
+namespace twincell::zoo::zoo_test {
 namespace {
 
 constexpr double kGoal = 0.99;   // of recall and precision
@@ -181,4 +181,4 @@ TEST(ZooWithoutBeads, AreRefused) {
 }
 
 }  // namespace
-}  // namespace twincell::zoo
+}  // namespace twincell::zoo::zoo_test
