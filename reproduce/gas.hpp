@@ -195,4 +195,11 @@ std::optional<double> w_2_of(const std::vector<GasPoint>& points);
 /// T_bar_z(W) of the rough systems by the printed fits of the paper's Table III.
 double table_3(int dimension, bool algebraic, double w);
 
+/// What decides the excess of rough discs over Table III: see p2_excess.cpp.
+inline constexpr const char* kExcessOfDiscs =
+    "an independent program of the same model lies 9 to 15 % above Table III at W = 35 to 89 too; of what "
+    "the paper "
+    "leaves open, c_t = 1.25 c_n and a resting ceiling at 100 d contradict none of the statements of "
+    "`p2-excess`";
+
 }  // namespace twincell::reproduce

@@ -120,8 +120,7 @@ Target against_table_3(int dimension, const std::vector<GasPoint>& points) {
   if (!off.empty()) t.measured += "; off by more at W = " + off;
   if (solid > 0) t.measured += fmt::format("; {} left out where the bed is solid", solid);
   t.verdict = all_of(verdicts);
-  if (t.verdict == Verdict::fail && dimension == 2)
-    t.reason = "an independent program of the same model lies 9 to 15 % above Table III at W = 35 to 89 too";
+  if (t.verdict == Verdict::fail && dimension == 2) t.reason = kExcessOfDiscs;
   return t;
 }
 

@@ -73,9 +73,7 @@ void add_targets(std::vector<Target>& targets, const Fitted& f, bool coefficient
     curve.measured =
         fmt::format("fitted/printed from {:.3f} to {:.3f}, +- {:.3f} at most", low, high, widest);
     curve.verdict = all_of(verdicts);
-    if (curve.verdict == Verdict::fail && f.dimension == 2)
-      curve.reason =
-          "an independent program of the same model lies 9 to 15 % above Table III at W = 35 to 89 too";
+    if (curve.verdict == Verdict::fail && f.dimension == 2) curve.reason = kExcessOfDiscs;
     close.measured = fmt::format("{:.4f}, printed {:.4f}", f.fit->correlation, p.correlation);
     close.verdict = holds(f.fit->correlation >= 0.99);
     signs.measured = fmt::format("{} runs of {} + and {} -, p = {:.3g}", f.fit->runs.runs,
