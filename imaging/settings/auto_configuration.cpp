@@ -86,6 +86,30 @@ std::optional<FoundSettings> best_not_round(const SettingsChoice& choice) {
   return best->settings;
 }
 
+/// The plain discs of one size that were tried, those with the most evidence first, if the chosen discs have
+/// a common profile and another size. Shaded spheres of two sizes look so: the profile describes one size and
+/// part of the other, with a diameter between them from which neither is found.
+std::vector<FoundSettings> plain_beside(const SettingsChoice& choice) {
+  constexpr double kOtherSize = 0.1;
+  const FoundSettings& chosen = choice.tried.front().settings;
+  std::vector<FoundSettings> plain;
+  if (chosen.method != kProfileRefiner.word) return plain;
+  for (const TriedSettings& t : choice.tried)
+    if (t.settings.method.empty() && t.settings.other_diameters_px.empty() && t.evidence > 0 &&
+        t.settings.bright == chosen.bright)
+      plain.push_back(t.settings);
+  if (!plain.empty() && std::abs(plain.front().diameter_px / chosen.diameter_px - 1) < kOtherSize)
+    plain.clear();
+  return plain;
+}
+
+/// Whether two settings may be those of two sizes of beads in one frame.
+bool apart(const FoundSettings& a, const FoundSettings& b) {
+  constexpr double kMinRatio = 1.12, kMaxRatio = 2.5;
+  const double ratio = std::max(a.diameter_px / b.diameter_px, b.diameter_px / a.diameter_px);
+  return ratio > kMinRatio && ratio < kMaxRatio;
+}
+
 /// The part of a frame around a disc, in which there are other discs too.
 cv::Mat region_around(const cv::Mat& frame, const LargerDisc& disc) {
   constexpr double kWider = 2;  // than the disc
@@ -243,6 +267,15 @@ class SettingsSearch {
     std::vector<FoundSettings> more;
     if (winner.method != kEdgeRefiner.word && winner.other_diameters_px.empty()) {
       if (auto mixed = find_polydisperse(grey_, given_, hypotheses_, winner)) more.push_back(*mixed);
+      if (const std::vector<FoundSettings> plain = plain_beside(choice); !plain.empty()) {
+        if (auto mixed = find_polydisperse(grey_, given_, hypotheses_, plain.front())) more.push_back(*mixed);
+        for (const FoundSettings& other : plain)
+          if (apart(plain.front(), other)) {
+            more.push_back(plain.front());
+            more.back().other_diameters_px = {other.diameter_px};
+            break;
+          }
+      }
       if (given_.refine.method == kExactRefiner.word) {
         const bool plain = completed(winner, given_).refine.method == kExactRefiner.word;
         winner.method = kEdgeRefiner.word;

@@ -92,12 +92,18 @@ std::vector<std::string> settings_doubts(const SettingsChoice& choice, const std
         fmt::format("{:.0f} % of the pixels have the brightest grey level: the light saturates the camera, "
                     "which moves rims and edges inwards; expose less",
                     100 * choice.saturated));
-  if (std::any_of(choice.tried.begin(), choice.tried.end(), [&](const TriedSettings& t) {
-        return !is_round(t) && t.evidence > choice.tried.front().evidence;
-      }))
-    doubts.emplace_back(
+  const auto more = std::find_if(choice.tried.begin(), choice.tried.end(), [&](const TriedSettings& t) {
+    return !is_round(t) && t.evidence > choice.tried.front().evidence;
+  });
+  // In a packing, light from one side makes discs of several sizes seem other than round.
+  if (more != choice.tried.end())
+    doubts.push_back(
         "objects that are not round explain more of the picture than the beads do: check the overlay of "
-        "twincell locate --overlay; --explain lists them");
+        "twincell locate --overlay" +
+        (more->settings.method.empty() && !more->settings.other_diameters_px.empty()
+             ? fmt::format(", and compare it with that of {}, if the beads are shaded and of several sizes",
+                           options_text(more->settings, refine))
+             : "; --explain lists them"));
   return doubts;
 }
 
