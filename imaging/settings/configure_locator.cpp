@@ -148,6 +148,53 @@ double width_by_neighbours(const cv::Mat& frame, const std::vector<Detection>& b
   return typical;
 }
 
+/// The first harmonic of the levels just inside the rim of a disc, in its contrast.
+cv::Point2d lit_side(const cv::Mat1f& levels, const Detection& bead) {
+  constexpr double kFrom = 0.7, kTo = 0.95;  // of the radius: outside of most highlights
+  const double contrast = std::abs(bead.raw_mass) / (std::numbers::pi * bead.radius * bead.radius);
+  cv::Point2d sum;
+  double mean = 0, n = 0;
+  cv::Point2d directions;  // of all pixels, which are not quite evenly spread
+  const int reach = static_cast<int>(std::ceil(bead.radius)), cx = cvRound(bead.x), cy = cvRound(bead.y);
+  for (int y = std::max(0, cy - reach); y <= std::min(levels.rows - 1, cy + reach); ++y)
+    for (int x = std::max(0, cx - reach); x <= std::min(levels.cols - 1, cx + reach); ++x) {
+      const cv::Point2d from(x - bead.x, y - bead.y);
+      const double r = std::hypot(from.x, from.y);
+      if (r < kFrom * bead.radius || r > kTo * bead.radius) continue;
+      const cv::Point2d direction = from / r;
+      const auto level = static_cast<double>(levels(y, x));
+      sum += level * direction, directions += direction;
+      mean += level, n += 1;
+    }
+  if (n == 0 || contrast == 0) return {};
+  return (sum - directions * (mean / n)) * (2 / (n * contrast));
+}
+
+/// How much the levels at the rims differ between the lit side of the discs and their mean, in the contrast
+/// of the discs, if most are lit from the same side. The fit, whose discs are even, moves their centres
+/// towards the light. 0: they are not, or too few are inside the frame.
+double one_sided_shading(const cv::Mat& frame, const std::vector<Detection>& beads) {
+  constexpr std::size_t kMinDiscs = 20;
+  constexpr double kLeast = 0.04, kMost = 0.55;  // of the contrast; of the discs
+  constexpr double kAlike = 0.6;                 // deviation from the common harmonic, in its size
+  cv::Mat1f levels;
+  frame.convertTo(levels, CV_32F);
+  std::vector<cv::Point2d> sides;
+  std::vector<double> x, y;
+  for (const Detection& b : beads) {
+    if (b.edge) continue;
+    sides.push_back(lit_side(levels, b));
+    x.push_back(sides.back().x), y.push_back(sides.back().y);
+  }
+  if (sides.size() < kMinDiscs) return 0;
+  const cv::Point2d common(upper_median(std::move(x)), upper_median(std::move(y)));
+  const double size = std::hypot(common.x, common.y);
+  const auto alike = std::count_if(sides.begin(), sides.end(), [&](const cv::Point2d& s) {
+    return std::hypot(s.x - common.x, s.y - common.y) < kAlike * size;
+  });
+  return size > kLeast && static_cast<double>(alike) > kMost * static_cast<double>(sides.size()) ? size : 0;
+}
+
 /// The median width of discs, px, if they are smaller than the beads that can be located well. 0: they are
 /// not.
 double width_of_spots(const std::vector<Detection>& beads, const LocatorOptions& settled) {
@@ -218,6 +265,7 @@ LocatorConfiguration adapted(const cv::Mat& frame, ChoiceOnFrame chosen, const L
   settled = with_spread_of_sizes(frame, with_pale_discs(frame, settled));
   const std::vector<Detection> beads = locate(frame, settled).beads;
   if (!chosen.choice.pairs) chosen.choice.apart_px = distance_of_parts(beads, settled);
+  chosen.choice.one_sided = one_sided_shading(frame, beads);
   if (given.diameter_px <= 0) {
     chosen.choice.spots_px = width_of_spots(beads, settled);
     if (!chosen.choice.pairs && chosen.choice.apart_px <= 0 && chosen.choice.spots_px <= 0)

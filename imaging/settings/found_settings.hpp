@@ -73,6 +73,9 @@ struct SettingsChoice {
   /// The distance of neighbours, px, if it is the width of shaded beads that touch and the chosen discs are
   /// their bright centres. 0: it is not, or another note says so.
   double touching_px = 0;
+  /// How much the levels at the rims differ between the lit side and the mean of the discs, in their
+  /// contrast, if most discs are lit from the same side. 0: they are not.
+  double one_sided = 0;
   /// Round regions that are larger than the beads and that no bead explains (larger_discs.hpp).
   std::vector<LargerDisc> larger;
   /// Share of the pixels that have the brightest grey level of the picture, if the beads are dark. A camera

@@ -79,6 +79,12 @@ std::vector<std::string> settings_doubts(const SettingsChoice& choice, const std
         "of that width that touch: the rims of shaded beads are found too far inside; compare the overlay of "
         "twincell locate --overlay with that of --diameter {:.1f}",
         choice.tried.front().rim_px, choice.touching_px, choice.touching_px));
+  if (choice.one_sided > 0)
+    doubts.push_back(fmt::format(
+        "the beads are lit from one side: their rims are {:.0f} % of their contrast brighter there than in "
+        "the mean. All centres are shifted towards the light by more than their stated errors; displacements "
+        "are right. Light the beads evenly, or from behind",
+        100 * choice.one_sided));
   if (!choice.larger.empty()) {
     const LargerDisc& largest = choice.larger.front();
     doubts.push_back(fmt::format(

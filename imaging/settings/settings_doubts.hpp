@@ -15,9 +15,9 @@ std::string options_text(const FoundSettings& settings, const std::string& refin
 
 /// A sentence with the options of the runner-up if the chosen settings won narrowly (narrow_runner_up), and a
 /// sentence each if a crystal is not covered, if the discs may be the highlights of larger beads or gaps, if
-/// beads that touch are wider than the discs, if the light saturates the camera, and if objects that are not
-/// round explain more of the picture than the chosen discs. Empty if there is no reason for doubt. Without a
-/// full stop.
+/// beads that touch are wider than the discs, if all beads are lit from one side, if the light saturates the
+/// camera, and if objects that are not round explain more of the picture than the chosen discs. Empty if
+/// there is no reason for doubt. Without a full stop.
 std::vector<std::string> settings_doubts(const SettingsChoice& choice, const std::string& refine);
 
 }  // namespace twincell::imaging

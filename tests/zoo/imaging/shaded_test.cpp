@@ -16,7 +16,7 @@
 #include "tests/support/one_picture.hpp"
 #include "tests/zoo/imaging/kinds.hpp"
 
-namespace twincell::zoo {
+namespace twincell::zoo::shaded_test {
 namespace {
 
 struct Shaded {
@@ -103,5 +103,21 @@ TEST(ShadedSpheres, OfTwoLargeSizesAreDoubted) {
   EXPECT_EQ(seen(imaging::locate(picture, stated).beads, places), places.size()) << doubts;
 }
 
+// Light from one side moves the fitted centres by some standard deviations, all alike, without larger errors.
+TEST(ShadedSpheres, AreDoubtedIfLitFromOneSide) {
+  const std::string lit = "lit from one side";
+  constexpr int kSide = 240;
+  const Places places = at_rest(15, inner(kSide, 10), 0.7, 4);
+  EXPECT_NE(located_shaded(matte(places, kSide, 0.3)).doubts.find(lit), std::string::npos);
+  EXPECT_EQ(located_shaded(matte(places, kSide, 0)).doubts.find(lit), std::string::npos);
+  // A highlight well inside the rim moves nothing.
+  Painter canvas(kSide, kLight);
+  for (const Place& p : places)
+    canvas.disc(p.x, p.y, p.radius, [](double u, double v, double) {
+      return 25 + 150 * std::exp(-((u + 0.25) * (u + 0.25) + (v + 0.3) * (v + 0.3)) / 0.03);
+    });
+  EXPECT_EQ(located_shaded(canvas.exposed(0.8, kNoise, 4)).doubts.find(lit), std::string::npos);
+}
+
 }  // namespace
-}  // namespace twincell::zoo
+}  // namespace twincell::zoo::shaded_test
