@@ -225,16 +225,16 @@ void run_one(const ReproduceOptions& options, const Common& common) {
   print_result(common, document, text);
 }
 
-/// Share of every figure: its worth of the budget for those with runs of their own. A figure that uses the
-/// runs of another gets the same extent, and a little time in case that one did not finish.
+/// Share of every figure: its time share of the budget for those with runs of their own. A figure that uses
+/// the runs of another gets the same extent, and a little time in case that one did not finish.
 std::map<std::string, Share> shares_of(double minutes, bool full) {
   constexpr double kWithoutRuns = 3;  // seconds
-  double worth = 0;
+  double all = 0;
   for (const Reproducible& r : reproduce::list())
-    if (r.runs_like.empty() && r.same_as.empty()) worth += r.worth;
+    if (r.runs_like.empty() && r.same_as.empty()) all += r.time_share;
   std::map<std::string, Share> shares;
   for (const Reproducible& r : reproduce::list()) {
-    const double own = minutes * (r.runs_like.empty() ? r : named(r.runs_like)).worth / worth;
+    const double own = minutes * (r.runs_like.empty() ? r : named(r.runs_like)).time_share / all;
     shares[r.name] = {own, full ? 1e300 : r.runs_like.empty() ? 60 * own : kWithoutRuns};
   }
   return shares;

@@ -387,7 +387,7 @@ Reproducible p1_appendix() {
   return {.name = "p1-appendix",
           .what = "single contact (app. A) and phase thresholds (app. B) against closed forms",
           .run = run,
-          .worth = 0.1,
+          .time_share = 0.1,
           .judges_again = true};
 }
 

@@ -686,7 +686,7 @@ Reproducible p1_fig3() {
           .takes_data = true,
           .judges_stored = true,
           .on_device = true,
-          .worth = 8};
+          .time_share = 8};
 }
 
 }  // namespace twincell::reproduce

@@ -275,7 +275,7 @@ Reproducible p1_fig4() {
           .shared_runs = kStrengthSweepRuns,
           .judges_stored = true,
           .on_device = true,
-          .worth = 4};
+          .time_share = 4};
 }
 
 }  // namespace twincell::reproduce

@@ -358,7 +358,7 @@ Reproducible p1_step() {
           .run = run,
           .judges_stored = true,
           .on_device = true,
-          .worth = 2,
+          .time_share = 2,
           .judges_again = true};
 }
 

@@ -69,7 +69,7 @@ Reproducible p1_table1() {
   return {.name = "p1-table1",
           .what = "parameters of the model in the preset, compared with the paper",
           .run = run,
-          .worth = 0.1,
+          .time_share = 0.1,
           .judges_again = true};
 }
 

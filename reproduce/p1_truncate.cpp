@@ -86,7 +86,7 @@ Reproducible p1_truncate() {
           .shared_runs = kStrengthSweepRuns,
           .judges_stored = true,
           .on_device = true,
-          .worth = 3,
+          .time_share = 3,
           .judges_again = true};
 }
 

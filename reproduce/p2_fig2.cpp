@@ -346,7 +346,7 @@ Reproducible p2_fig2() {
   Reproducible entry = gas_entry(
       "p2-fig2", "scaled granular temperature against W in four systems, compared with Table III", run);
   entry.takes_data = true;
-  entry.worth = 5;
+  entry.time_share = 5;
   return entry;
 }
 

@@ -183,7 +183,7 @@ Reproducible p2_fig3() {
   return {.name = "p2-fig3",
           .what = "snapshots below, near and at W_f, and the mobile layers",
           .run = run,
-          .worth = 0.2};
+          .time_share = 0.2};
 }
 
 }  // namespace twincell::reproduce

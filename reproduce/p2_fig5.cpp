@@ -173,7 +173,7 @@ Reproduction run(const Request& request) {
 
 Reproducible p2_fig5() {
   Reproducible entry = gas_entry("p2-fig5", "a channel shaken sideways, with and without gravity", run);
-  entry.worth = 4;
+  entry.time_share = 4;
   return entry;
 }
 

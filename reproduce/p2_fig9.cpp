@@ -468,7 +468,7 @@ Reproduction run_10(const Request& request) {
 Reproducible p2_fig9() {
   Reproducible entry = gas_entry(
       "p2-fig9", "temperature against stiffness, restitution, friction and number of layers", run_9);
-  entry.worth = 3;
+  entry.time_share = 3;
   return entry;
 }
 Reproducible p2_fig10() {

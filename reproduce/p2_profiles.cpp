@@ -612,7 +612,7 @@ Reproduction run_16(const Request& request) {
 Reproducible p2_fig12() {
   Reproducible entry = gas_entry(
       "p2-fig12", "local temperature against height, shallow and deep beds (Figs. 12 and 13)", run_12);
-  entry.worth = 2;
+  entry.time_share = 2;
   return entry;
 }
 Reproducible p2_fig13() {

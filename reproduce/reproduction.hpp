@@ -68,7 +68,7 @@ struct Reproducible {
   bool takes_data = false;       ///< whether it uses Request::window or Request::data
   bool judges_stored = false;    ///< whether it can use Request::stored
   bool on_device = false;        ///< whether its beds can run on a device: a sweep of time steps
-  double worth = 1;              ///< share of the time of `reproduce --all`, relative to the others
+  double time_share = 1;         ///< share of the time of `reproduce --all`, relative to the others
   std::string runs_like = {};    ///< entry whose runs this one needs: `--all` gives it the same budget for
                                  ///< them, and no time of its own
   /// Its targets are those of other figures under other assumptions, or checks of the program, and no

@@ -26,8 +26,8 @@
 #include "bench/locate/contestants.hpp"
 #include "core/malloc_tuning.hpp"
 #include "imaging/benchmark/cases.hpp"
+#include "imaging/benchmark/centre_scores.hpp"
 #include "imaging/benchmark/cramer_rao_bound.hpp"
-#include "imaging/benchmark/detection_score.hpp"
 
 using namespace twincell::bench;
 using namespace twincell::imaging::rendered;
@@ -84,7 +84,7 @@ std::optional<Reported> read_found(const fs::path& file) {
 }
 
 // A value that is undefined because no bead was found is absent.
-nlohmann::json as_json(const Marks::Summary& s) {
+nlohmann::json as_json(const CentreScores::Summary& s) {
   nlohmann::json j{{"beads", s.beads},   {"found", s.found},         {"invented", s.invented},
                    {"recall", s.recall}, {"precision", s.precision}, {"bound", s.bound}};
   if (s.found == 0) return j;
@@ -147,7 +147,7 @@ void write_frames(const Wanted& wanted) {
 
 struct Row {
   std::string method;
-  Marks marks;
+  CentreScores scores;
   double ms = 1e300;
 };
 
@@ -197,11 +197,11 @@ nlohmann::json measure(const Wanted& wanted) {
             found = reported->found;
           }
           table[k].ms = std::min(table[k].ms, ms);
-          table[k].marks.add(pictures[f], found, bound);
+          table[k].scores.add(pictures[f], found, bound);
         }
       }
       for (const Row& row : table) {
-        const Marks::Summary s = row.marks.summary();
+        const CentreScores::Summary s = row.scores.summary();
         if (s.beads == 0) continue;
         nlohmann::json j = as_json(s);
         j["case"] = c.name;
@@ -226,14 +226,14 @@ void tune() {
   const std::vector<double> bound(picture.discs.size(), 1);
   struct Try {
     std::string name;
-    Marks::Summary s;
+    CentreScores::Summary s;
     double f;
   };
   std::vector<Try> tries;
   for (const auto& [name, settings] : hough_grid()) {
-    Marks marks;
-    marks.add(picture, opencv_hough(frame, c, settings), bound);
-    const Marks::Summary s = marks.summary();
+    CentreScores scores;
+    scores.add(picture, opencv_hough(frame, c, settings), bound);
+    const CentreScores::Summary s = scores.summary();
     tries.push_back(
         {name, s, std::round(100 * 2 * s.recall * s.precision / std::max(1e-9, s.recall + s.precision))});
   }

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "core/cpu_clock.hpp"
+#include "imaging/benchmark/centre_scores.hpp"
 #include "imaging/benchmark/cramer_rao_bound.hpp"
-#include "imaging/benchmark/detection_score.hpp"
 #include "imaging/benchmark/packing.hpp"
 #include "imaging/benchmark/picture.hpp"
 #include "imaging/locate/locator.hpp"
@@ -19,7 +19,7 @@ namespace twincell::imaging {
 
 namespace {
 
-using rendered::Marks;
+using rendered::CentreScores;
 using rendered::Picture;
 
 /// Limits OpenCV to the calling thread, because thread_cpu_seconds() does not count the time of its worker
@@ -96,7 +96,7 @@ std::vector<LocatePrecision> locate_precision(const std::vector<LocateSetting>& 
     }
   }
   std::vector<LocatePrecision> all;
-  std::vector<Marks> marks(settings.size());
+  std::vector<CentreScores> scores(settings.size());
   for (const LocateSetting& s : settings) {
     LocatePrecision p;
     p.setting = s;
@@ -113,13 +113,13 @@ std::vector<LocatePrecision> locate_precision(const std::vector<LocateSetting>& 
         const double before = thread_cpu_seconds();
         const auto centres = found(e.frame, settings[k]);
         seconds += thread_cpu_seconds() - before;
-        if (round == 0) marks[k].add(e.picture, centres, e.bound);
+        if (round == 0) scores[k].add(e.picture, centres, e.bound);
       }
       all[k].seconds = std::min(all[k].seconds, seconds / scene.frames);
       progress.update(++done, runs);
     }
   for (std::size_t k = 0; k < settings.size(); ++k) {
-    const Marks::Summary s = marks[k].summary();
+    const CentreScores::Summary s = scores[k].summary();
     LocatePrecision& p = all[k];
     p.recall = s.recall;
     p.precision = s.precision;

@@ -39,7 +39,7 @@ struct LocatePrecision {
   double rms = 0;                 ///< error per coordinate, px
   double bound = 0;               ///< rms of the smallest standard deviation of an unbiased estimate, px
   double bias_x = 0, bias_y = 0;  ///< mean error, px
-  double locking = 0;  ///< first harmonic of the error in the sub-pixel position (detection_score.hpp), px
+  double locking = 0;  ///< first harmonic of the error in the sub-pixel position (centre_scores.hpp), px
   double locking_by_chance = 0;  ///< mean value of `locking` for errors without pixel locking, px
   double seconds = 0;            ///< processor time per frame on one thread
 

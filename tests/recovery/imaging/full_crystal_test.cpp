@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "imaging/benchmark/centre_scores.hpp"
 #include "imaging/benchmark/cramer_rao_bound.hpp"
-#include "imaging/benchmark/detection_score.hpp"
 #include "imaging/benchmark/picture.hpp"
 #include "imaging/locate/locator.hpp"
 #include "imaging/settings/configure_locator.hpp"
@@ -24,8 +24,8 @@
 namespace twincell::imaging::full_crystal_test {
 namespace {
 
+using rendered::CentreScores;
 using rendered::Disc;
-using rendered::Marks;
 using rendered::Picture;
 
 constexpr double kSnr = 51;
@@ -75,16 +75,16 @@ TEST_P(FullCrystal, IsFoundUnasked) {
                   read_picture(name));
   LocatorOptions options;
   options.polarity_known = false;
-  Marks marks;
+  CentreScores scores;
   const auto frames = open_frames(name);
   FramesAhead ahead(*frames);
   const LocatorOptions settled = configure_locator(ahead, options).locator;
   locate_stack(ahead, settled, 1, [&](std::int64_t, const cv::Mat&, const Located& located) {
     std::vector<cv::Point2d> centres;
     for (const Detection& b : located.beads) centres.emplace_back(b.x, b.y);
-    marks.add(truth, centres, rendered::cramer_rao_bound(light, truth, kSnr));
+    scores.add(truth, centres, rendered::cramer_rao_bound(light, truth, kSnr));
   });
-  const Marks::Summary m = marks.summary();
+  const CentreScores::Summary m = scores.summary();
   std::printf("%g px: diameter %.2f px, %s, %s; recall %.4f, precision %.4f, rms %.4f px, %.2f x bound\n",
               c.diameter, settled.diameter_px, settled.preprocess.bright ? "bright" : "dark",
               settled.refine.method.c_str(), m.recall, m.precision, m.rms, m.rms / m.bound);

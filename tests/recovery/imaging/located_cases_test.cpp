@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "imaging/benchmark/cases.hpp"
+#include "imaging/benchmark/centre_scores.hpp"
 #include "imaging/benchmark/cramer_rao_bound.hpp"
-#include "imaging/benchmark/detection_score.hpp"
 #include "imaging/locate/locator.hpp"
 #include "tests/support/pictures.hpp"
 
@@ -28,7 +28,7 @@ namespace twincell::imaging::located_cases_test {
 namespace {
 
 using rendered::Case;
-using rendered::Marks;
+using rendered::CentreScores;
 using rendered::Picture;
 
 const Case& case_of(const std::string& name) {
@@ -45,7 +45,7 @@ struct Seen {
     Located located;
   };
   std::vector<One> frames;
-  Marks::Summary marks;
+  CentreScores::Summary scores;
 };
 
 const Seen& seen(const std::string& name, double snr) {
@@ -53,7 +53,7 @@ const Seen& seen(const std::string& name, double snr) {
   const auto found = known.find({name, snr});
   if (found != known.end()) return found->second;
   Seen& s = known[{name, snr}];
-  Marks marks;
+  CentreScores scores;
   const bool slow = name.starts_with("motion") || name == "all_at_once";  // expensive to render and to bound
   for (std::uint64_t seed = 11; seed <= (slow ? 11 : 12); ++seed) {
     const Case& c = case_of(name);
@@ -66,11 +66,11 @@ const Seen& seen(const std::string& name, double snr) {
     one.located = locate(one.frame, options);
     std::vector<cv::Point2d> centres;
     for (const Detection& b : one.located.beads) centres.emplace_back(b.x, b.y);
-    marks.add(one.picture, centres, rendered::cramer_rao_bound(light, one.picture, snr));
+    scores.add(one.picture, centres, rendered::cramer_rao_bound(light, one.picture, snr));
     s.frames.push_back(std::move(one));
   }
-  s.marks = marks.summary();
-  const Marks::Summary& m = s.marks;
+  s.scores = scores.summary();
+  const CentreScores::Summary& m = s.scores;
   std::printf(
       "%-16s SNR %5g: recall %.5f, precision %.5f, rms %.5f px, %.3f x bound, bias %+.5f %+.5f, locking "
       "%.5f, largest %.3f\n",
@@ -93,13 +93,13 @@ class LocatedCase : public testing::Test {
   }
 
   void expect_complete(const std::string& name, double snr) {
-    const Marks::Summary& m = look(name, snr).marks;
+    const CentreScores::Summary& m = look(name, snr).scores;
     EXPECT_EQ(m.found, m.beads) << name << ", SNR " << snr;
     EXPECT_EQ(m.invented, 0U) << name << ", SNR " << snr;
   }
   /// \param least, most limits of rms divided by the bound
   void expect_near_bound(const std::string& name, double snr, double least = 0.9, double most = 1.3) {
-    const Marks::Summary& m = look(name, snr).marks;
+    const CentreScores::Summary& m = look(name, snr).scores;
     EXPECT_GE(m.rms, least * m.bound) << name << ", SNR " << snr;
     EXPECT_LE(m.rms, most * m.bound) << name << ", SNR " << snr;
     // The tolerance is four standard errors of a mean; chance exceeds it once in ten thousand trials.
@@ -133,10 +133,10 @@ TEST_F(LocatedCase, OneSweepComesNearTheBound) {
     options.refine.method = "fast";
     std::vector<cv::Point2d> centres;
     for (const Detection& b : locate(one.frame, options).beads) centres.emplace_back(b.x, b.y);
-    Marks marks;
-    marks.add(one.picture, centres,
-              rendered::cramer_rao_bound(rendered::expected(one.picture), one.picture, 51));
-    const Marks::Summary m = marks.summary();
+    CentreScores scores;
+    scores.add(one.picture, centres,
+               rendered::cramer_rao_bound(rendered::expected(one.picture), one.picture, 51));
+    const CentreScores::Summary m = scores.summary();
     std::printf("%s, fast: rms %.5f px, %.3f x bound\n", name.c_str(), m.rms, m.rms / m.bound);
     EXPECT_EQ(m.found, m.beads) << name;
     EXPECT_EQ(m.invented, 0U) << name;
@@ -160,7 +160,7 @@ TEST_F(LocatedCase, TwoSweepsReachTheBound) {
 // Three times that value occurs once in a thousand trials.
 TEST_F(LocatedCase, NoLockingToPixels) {
   for (const char* name : {"sparse", "random"}) {
-    const Marks::Summary& m = look(name, 51).marks;
+    const CentreScores::Summary& m = look(name, 51).scores;
     EXPECT_LE(m.locking, 3 * m.rms * std::sqrt(M_PI / (2 * static_cast<double>(m.found)))) << name;
   }
 }
@@ -209,7 +209,7 @@ TEST_F(LocatedCase, TwoSizes) {
 TEST_F(LocatedCase, BeadsCutByTheFrameAreAtTheBound) {
   expect_complete("edge", 51);
   expect_near_bound("edge", 51, 0.9, 1.1);
-  EXPECT_LE(look("edge", 51).marks.largest, 0.05);
+  EXPECT_LE(look("edge", 51).scores.largest, 0.05);
 }
 
 TEST_F(LocatedCase, DefocusGlareTracersAndMotion) {
@@ -239,7 +239,7 @@ TEST_F(LocatedCase, TheWayOfTheBed) {
 
 TEST_F(LocatedCase, EverythingAtOnce) {
   const Seen& s = look("all_at_once", 51);
-  EXPECT_EQ(s.marks.invented, 0U);
+  EXPECT_EQ(s.scores.invented, 0U);
   // A centre within a third of a pixel of the frame's border may be classified as outside.
   std::size_t on_border = 0;
   for (const rendered::Disc& d : s.frames[0].picture.discs) {
@@ -247,9 +247,9 @@ TEST_F(LocatedCase, EverythingAtOnce) {
         std::min({d.x, d.y, s.frames[0].frame.cols - 1 - d.x, s.frames[0].frame.rows - 1 - d.y}) + 0.5;
     on_border += std::abs(in) < 0.33;
   }
-  EXPECT_GE(s.marks.found + on_border, s.marks.beads);
-  EXPECT_GE(s.marks.rms, 0.9 * s.marks.bound);
-  EXPECT_LE(s.marks.rms, 1.2 * s.marks.bound);
+  EXPECT_GE(s.scores.found + on_border, s.scores.beads);
+  EXPECT_GE(s.scores.rms, 0.9 * s.scores.bound);
+  EXPECT_LE(s.scores.rms, 1.2 * s.scores.bound);
 }
 
 TEST_F(LocatedCase, TracersAreThoseOfTheTruth) {

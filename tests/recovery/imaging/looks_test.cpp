@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "imaging/benchmark/detection_score.hpp"
+#include "imaging/benchmark/centre_scores.hpp"
 #include "imaging/benchmark/packing.hpp"
 #include "imaging/benchmark/picture.hpp"
 #include "imaging/locate/locator.hpp"
@@ -28,8 +28,8 @@
 namespace twincell::imaging::looks_test {
 namespace {
 
+using rendered::CentreScores;
 using rendered::Disc;
-using rendered::Marks;
 using rendered::Picture;
 
 constexpr double kSnr = 51;
@@ -174,7 +174,7 @@ class Looks : public testing::TestWithParam<Look> {
 
     LocatorOptions options;
     options.polarity_known = false;
-    Marks marks;
+    CentreScores scores;
     const double bound = bound_of(look, diameter);
     const auto frames = open_frames(name);
     FramesAhead ahead(*frames);
@@ -182,9 +182,9 @@ class Looks : public testing::TestWithParam<Look> {
     locate_stack(ahead, settled, 1, [&](std::int64_t, const cv::Mat&, const Located& located) {
       std::vector<cv::Point2d> centres;
       for (const Detection& b : located.beads) centres.emplace_back(b.x, b.y);
-      marks.add(truth, centres, std::vector<double>(places.size(), bound));
+      scores.add(truth, centres, std::vector<double>(places.size(), bound));
     });
-    const Marks::Summary m = marks.summary();
+    const CentreScores::Summary m = scores.summary();
     std::printf(
         "%s, %s, %g px: diameter %.2f px, %s, %s; recall %.4f, precision %.4f, rms %.4f px, %.2f x bound\n",
         look.name.c_str(), arrangement.c_str(), diameter, settled.diameter_px,

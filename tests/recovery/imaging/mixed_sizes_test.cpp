@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "imaging/benchmark/centre_scores.hpp"
 #include "imaging/benchmark/cramer_rao_bound.hpp"
-#include "imaging/benchmark/detection_score.hpp"
 #include "imaging/benchmark/packing.hpp"
 #include "imaging/locate/locator.hpp"
 #include "imaging/settings/auto_configuration.hpp"
@@ -21,7 +21,7 @@
 namespace twincell::imaging::mixed_sizes_test {
 namespace {
 
-using rendered::Marks;
+using rendered::CentreScores;
 using rendered::Picture;
 
 struct Mixture {
@@ -62,7 +62,7 @@ Picture picture_of(const Mixture& m, std::uint64_t seed) {
 struct Seen {
   std::vector<double> diameters;
   std::string method;
-  Marks::Summary marks;
+  CentreScores::Summary scores;
 };
 
 Seen look(const Mixture& m) {
@@ -82,13 +82,13 @@ Seen look(const Mixture& m) {
                         options.other_diameters_px.end());
   std::vector<cv::Point2d> centres;
   for (const Detection& b : locate(frame, options).beads) centres.emplace_back(b.x, b.y);
-  Marks marks;
-  marks.add(picture, centres, rendered::cramer_rao_bound(light, picture, m.snr));
-  seen.marks = marks.summary();
+  CentreScores scores;
+  scores.add(picture, centres, rendered::cramer_rao_bound(light, picture, m.snr));
+  seen.scores = scores.summary();
   std::printf("%-34s found:", m.name.c_str());
   for (const double d : seen.diameters) std::printf(" %.2f", d);
-  std::printf(" px, %s; recall %.4f, precision %.4f, %.3f x bound\n", seen.method.c_str(), seen.marks.recall,
-              seen.marks.precision, seen.marks.rms / seen.marks.bound);
+  std::printf(" px, %s; recall %.4f, precision %.4f, %.3f x bound\n", seen.method.c_str(), seen.scores.recall,
+              seen.scores.precision, seen.scores.rms / seen.scores.bound);
   return seen;
 }
 
@@ -100,10 +100,10 @@ TEST_P(MixedSizes, AreFoundWithoutOptions) {
   EXPECT_EQ(seen.method, "exact");
   for (std::size_t k = 0; k < seen.diameters.size(); ++k)
     EXPECT_NEAR(seen.diameters[k], GetParam().diameters[k], 0.01 * GetParam().diameters[k]);
-  EXPECT_EQ(seen.marks.found, seen.marks.beads);
-  EXPECT_EQ(seen.marks.invented, 0U);
-  EXPECT_GE(seen.marks.rms, 0.85 * seen.marks.bound);
-  EXPECT_LE(seen.marks.rms, 1.15 * seen.marks.bound);
+  EXPECT_EQ(seen.scores.found, seen.scores.beads);
+  EXPECT_EQ(seen.scores.invented, 0U);
+  EXPECT_GE(seen.scores.rms, 0.85 * seen.scores.bound);
+  EXPECT_LE(seen.scores.rms, 1.15 * seen.scores.bound);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -132,17 +132,17 @@ TEST(OneSize, StaysOne) {
                            Mixture{"15 px, blur 2 px", {15}, {1}, 2}, Mixture{"8 px", {8}, {1}}}) {
     const Seen seen = look(m);
     EXPECT_EQ(seen.diameters.size(), 1U) << m;
-    EXPECT_EQ(seen.marks.found, seen.marks.beads) << m;
-    EXPECT_EQ(seen.marks.invented, 0U) << m;
+    EXPECT_EQ(seen.scores.found, seen.scores.beads) << m;
+    EXPECT_EQ(seen.scores.invented, 0U) << m;
   }
 }
 
 // Sizes spread evenly by a quarter are not two sizes, but two sizes describe them.
 TEST(OneSize, SpreadWideIsLocatedAsTwo) {
   const Seen seen = look({"15 px within 25 %", {15}, {1}, 0.8, 51, 0.25});
-  EXPECT_EQ(seen.marks.found, seen.marks.beads);
-  EXPECT_EQ(seen.marks.invented, 0U);
-  EXPECT_LE(seen.marks.rms, 1.15 * seen.marks.bound);
+  EXPECT_EQ(seen.scores.found, seen.scores.beads);
+  EXPECT_EQ(seen.scores.invented, 0U);
+  EXPECT_LE(seen.scores.rms, 1.15 * seen.scores.bound);
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "imaging/benchmark/centre_scores.hpp"
 #include "imaging/benchmark/cramer_rao_bound.hpp"
-#include "imaging/benchmark/detection_score.hpp"
 #include "imaging/benchmark/packing.hpp"
 #include "imaging/settings/configure_locator.hpp"
 #include "imaging/stack/open_frames.hpp"
@@ -20,7 +20,7 @@
 namespace twincell::imaging::pale_discs_test {
 namespace {
 
-using rendered::Marks;
+using rendered::CentreScores;
 using rendered::Picture;
 
 struct Pale {
@@ -43,22 +43,22 @@ Picture picture_of(const Pale& c) {
   return p;
 }
 
-Marks::Summary look(const Pale& c, LocatorOptions options) {
+CentreScores::Summary look(const Pale& c, LocatorOptions options) {
   const Picture picture = picture_of(c);
   const cv::Mat1d light = rendered::expected(picture);
   const TemporaryFolder folder;
   const std::string name = (folder.path() / "frame.png").string();
   write_picture(name, rendered::expose(light, picture, c.snr, 4));
   const auto frames = open_frames(name);
-  Marks marks;
+  CentreScores scores;
   FramesAhead ahead(*frames);
   const LocatorOptions settled = configure_locator(ahead, options).locator;
   locate_stack(ahead, settled, 1, [&](std::int64_t, const cv::Mat&, const Located& located) {
     std::vector<cv::Point2d> centres;
     for (const Detection& b : located.beads) centres.emplace_back(b.x, b.y);
-    marks.add(picture, centres, rendered::cramer_rao_bound(light, picture, c.snr));
+    scores.add(picture, centres, rendered::cramer_rao_bound(light, picture, c.snr));
   });
-  const Marks::Summary m = marks.summary();
+  const CentreScores::Summary m = scores.summary();
   std::printf(
       "contrast %.2f, SNR %g, %s: %.2f px, %s, contrast %.2f; recall %.4f, precision %.4f, %.2f x bound\n",
       c.contrast, c.snr, c.touching ? "touching" : "apart", settled.diameter_px,
@@ -68,7 +68,7 @@ Marks::Summary look(const Pale& c, LocatorOptions options) {
 
 class PaleDiscs : public testing::TestWithParam<Pale> {
  protected:
-  void expect_at_the_bound(const Marks::Summary& m) {
+  void expect_at_the_bound(const CentreScores::Summary& m) {
     EXPECT_EQ(m.found, m.beads);
     EXPECT_EQ(m.invented, 0U);
     EXPECT_GE(m.rms, 0.85 * m.bound);
@@ -92,7 +92,7 @@ TEST_P(PaleDiscs, AreFoundAtAGivenSize) {
 TEST(PaleTracersInOneSweep, AreFound) {
   LocatorOptions options;
   options.refine.method = "fast";
-  const Marks::Summary m = look({0.6, 51, true, 9}, options);
+  const CentreScores::Summary m = look({0.6, 51, true, 9}, options);
   EXPECT_EQ(m.found, m.beads);
   EXPECT_EQ(m.invented, 0U);
 }

@@ -10,8 +10,8 @@
 
 namespace twincell::imaging::rendered {
 
-/// Accumulates the scores of all frames of one case, noise level and method.
-class Marks {
+/// Accumulates the errors of the centres in all frames of one case, noise level and method.
+class CentreScores {
  public:
   /// Matches detections to discs, nearest pair first, within one disc radius. A disc with its centre outside
   /// the frame is not scored, nor is a detection that matches it.

@@ -1,4 +1,4 @@
-#include "imaging/benchmark/detection_score.hpp"
+#include "imaging/benchmark/centre_scores.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 namespace twincell::imaging::rendered {
 
-void Marks::add(const Picture& picture, const std::vector<cv::Point2d>& found,
-                const std::vector<double>& bound) {
+void CentreScores::add(const Picture& picture, const std::vector<cv::Point2d>& found,
+                       const std::vector<double>& bound) {
   const std::vector<Disc>& discs = picture.discs;
   struct Pair {
     double distance;
@@ -41,7 +41,7 @@ void Marks::add(const Picture& picture, const std::vector<cv::Point2d>& found,
   invented_ += static_cast<std::size_t>(std::count(find_taken.begin(), find_taken.end(), false));
 }
 
-Marks::Summary Marks::summary() const {
+CentreScores::Summary CentreScores::summary() const {
   constexpr int kBins = 10;
   Summary s;
   s.beads = beads_;
