@@ -84,6 +84,8 @@ Product Product::table(const std::string& heading) {
 }
 
 bool is_product(const std::filesystem::path& file, const Product& product) {
+  std::error_code ec;
+  if (!std::filesystem::is_regular_file(file, ec)) return false;  // to read a pipe is to wait
   switch (product.sign) {
     case Product::Sign::none:
       return false;

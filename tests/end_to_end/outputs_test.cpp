@@ -180,6 +180,21 @@ TEST(Outputs, ForeignFilesAreNotOverwritten) {
   }
 }
 
+// The ending lets every verb get as far as the question whether the file is one of its products, and to read
+// a pipe without a writer is to wait for ever.
+TEST(Outputs, APipeUnderTheNameOfAProductIsRefusedUnread) {
+  const Sandbox sandbox;
+  for (const Verb& verb : verbs()) {
+    const std::string ending = verb.folder ? "" : std::string(verb.name) == "new" ? ".toml" : ".csv";
+    const std::string pipe = "waiting" + ending;
+    if (!fs::exists(pipe)) ::mkfifo(pipe.c_str(), 0600);
+    const auto before = Sandbox::contents();
+    const Ran ran = run_verb(verb, pipe);
+    EXPECT_EQ(ran.code, 2) << verb.name << ": " << ran.err;
+    ASSERT_EQ(Sandbox::contents(), before) << verb.name;
+  }
+}
+
 // `-o -`: a single-file text output goes to standard output, complete and alone; all other outputs are
 // refused.
 TEST(Outputs, StandardOutputTakesTextAlone) {
