@@ -91,6 +91,31 @@ void check(const AnalysisOptions& options) {
   if (options.rest_height) require_range({.file = {}, .key = "rest_height"}, *options.rest_height, 0, 1e4);
 }
 
+/// Whether the results of an observable depend on an option, with the neighbours of the options.
+bool depends(const ObservableEntry& entry, std::string_view option, const AnalysisOptions& options) {
+  const auto reads = [&](std::string_view word) {
+    return std::find(entry.reads.begin(), entry.reads.end(), word) != entry.reads.end();
+  };
+  const bool by_cutoff = options.neighbours == NeighbourRule::cutoff;
+  if (option == "cutoff") return by_cutoff && reads("neighbours");
+  if (option == "cell_radius") return reads(option) || (!by_cutoff && reads("neighbours"));
+  return reads(option);
+}
+
+/// The options that differ from their defaults, without the cycles.
+std::vector<std::string_view> given_options(const AnalysisOptions& options) {
+  const AnalysisOptions defaults;
+  std::vector<std::string_view> given;
+  if (!options.tracers.empty() || options.tracer_band) given.emplace_back("tracers");
+  if (options.s_b != defaults.s_b) given.emplace_back("s_b");
+  if (options.neighbours != defaults.neighbours) given.emplace_back("neighbours");
+  if (options.neighbour_cutoff) given.emplace_back("cutoff");
+  if (options.cell_radius != defaults.cell_radius) given.emplace_back("cell_radius");
+  if (options.field_cell != defaults.field_cell) given.emplace_back("field_cell");
+  if (options.rest_height) given.emplace_back("rest_height");
+  return given;
+}
+
 /// Builds the context. Tracers and the rest height come from the first frame at phase 0 (from the very first
 /// frame if no frame has phase 0 or the frames have no phase).
 AnalysisContext make_context(const TrajectorySource& trajectory, const AnalysisOptions& options) {
@@ -232,6 +257,31 @@ std::vector<Result> requested_results(const std::vector<ChosenObservable>& chose
 }
 
 }  // namespace
+
+void require_read(const AnalysisOptions& options) {
+  constexpr std::size_t kMostNames = 8;
+  for (const std::string_view option : given_options(options)) {
+    std::vector<std::string_view> readers;
+    bool read = false;
+    for (const ObservableEntry* entry : entries()) {
+      if (!depends(*entry, option, options)) continue;
+      for (const NamedResult& result : entry->results) {
+        readers.push_back(result.name);
+        read = read || options.wants(std::string(result.name));
+      }
+    }
+    if (read) continue;
+    if (readers.empty())
+      throw ConfigError(
+          {.file = {}, .key = std::string(option)},
+          "is the distance of neighbours with the rule \"cutoff\"; with another rule nothing depends on it.");
+    const bool all = readers.size() <= kMostNames;
+    if (!all) readers.resize(kMostNames);
+    throw ConfigError({.file = {}, .key = std::string(option)},
+                      fmt::format("no requested result depends on it; {}{} do.", fmt::join(readers, ", "),
+                                  all ? "" : " and others"));
+  }
+}
 
 std::vector<std::string> result_names() {
   std::vector<std::string> names;

@@ -249,6 +249,8 @@ void run_windows(const Common& common, const AnalyzeOptions& options) {
 }
 
 void run(const Common& common, const AnalyzeOptions& options) {
+  // Figures are of the bed, whatever results are requested.
+  if (options.figures.empty()) analysis::require_read(options.analysis);
   if (options.window > 0) return run_windows(common, options);
   if (!options.table.empty())
     throw ConfigError({.file = {}, .key = "--table"}, "is a table of windows; give --window-cycles.");

@@ -226,6 +226,7 @@ void bind_analysis(py::module_& module) {
                                                    .neighbour_cutoff = cutoff,
                                                    .rest_height = rest_height,
                                                    .only = names_of(only)};
+        analysis::require_read(options);
         return analyzed_windows(*trajectory_of(trajectory), options, window_cycles, callback);
       },
       py::arg("trajectory"), py::arg("window_cycles"), py::arg("only") = py::list(), py::kw_only(),
@@ -264,6 +265,7 @@ void bind_analysis(py::module_& module) {
                                                    .field_cell = field_cell,
                                                    .rest_height = rest_height,
                                                    .only = names_of(only)};
+        analysis::require_read(options);
         return analyzed(trajectories, options, callback);
       },
       py::arg("trajectory"), py::arg("only") = py::list(), py::kw_only(), py::arg("discard") = 0,

@@ -141,6 +141,7 @@ class StressField : public Observable {
 
 }  // namespace
 
-constinit const ObservableEntry stress_field_observable = {kResults, &make_observable<StressField>};
+constinit const ObservableEntry stress_field_observable = {
+    kResults, &make_observable<StressField>, {"field_cell"}};
 
 }  // namespace twincell::analysis

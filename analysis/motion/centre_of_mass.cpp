@@ -183,6 +183,7 @@ std::optional<double> resting_height(const TrajectoryInfo& info, const Frame& fr
   return std::nullopt;
 }
 
-constinit const ObservableEntry centre_of_mass_observable = {kResults, &make_observable<CentreOfMass>};
+constinit const ObservableEntry centre_of_mass_observable = {
+    kResults, &make_observable<CentreOfMass>, {"rest_height"}};
 
 }  // namespace twincell::analysis

@@ -367,6 +367,7 @@ Circulation circulation_of(const DisplacementField& field) {
   return c;
 }
 
-constinit const ObservableEntry convection_observable = {kResults, &make_observable<Convection>};
+constinit const ObservableEntry convection_observable = {
+    kResults, &make_observable<Convection>, {"field_cell"}};
 
 }  // namespace twincell::analysis

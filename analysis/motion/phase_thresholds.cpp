@@ -116,6 +116,7 @@ class PhaseThresholds : public Observable {
 
 }  // namespace
 
-constinit const ObservableEntry phase_thresholds_observable = {kResults, &make_observable<PhaseThresholds>};
+constinit const ObservableEntry phase_thresholds_observable = {
+    kResults, &make_observable<PhaseThresholds>, {"tracers", "s_b"}};
 
 }  // namespace twincell::analysis

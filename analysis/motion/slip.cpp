@@ -320,6 +320,6 @@ class Slip : public Observable {
 
 }  // namespace
 
-constinit const ObservableEntry slip_observable = {kResults, &make_observable<Slip>};
+constinit const ObservableEntry slip_observable = {kResults, &make_observable<Slip>, {"neighbours"}};
 
 }  // namespace twincell::analysis

@@ -220,6 +220,10 @@ struct NamedResult {
 struct ObservableEntry {
   std::span<const NamedResult> results;
   std::unique_ptr<Observable> (*make)(const AnalysisContext&);
+  /// The members of AnalysisOptions on which its results depend, but for the cycles: "tracers" (or their
+  /// band), "s_b", "neighbours" (and, by the rule, the cutoff or the radius of the cells), "cell_radius",
+  /// "field_cell", "rest_height".
+  std::array<std::string_view, 2> reads = {};
 };
 /// The factory of an observable that is constructed from the context.
 template <class O>
@@ -229,6 +233,10 @@ std::unique_ptr<Observable> make_observable(const AnalysisContext& context) {
 
 /// The entry of the result of that name; without a known name, a result that is pooled by its mean.
 NamedResult named_result(std::string_view name);
+
+/// Refuses options that differ from their defaults and on which no requested result depends.
+/// \throws ConfigError naming the option and the results that depend on it
+void require_read(const AnalysisOptions& options);
 
 /// Computes all results of a trajectory in one pass. Except for series with one value per cycle, memory does
 /// not grow with the number of frames.

@@ -95,6 +95,7 @@ class BondOrderObservable : public Observable {
 
 }  // namespace
 
-constinit const ObservableEntry bond_order_observable = {kResults, &make_observable<BondOrderObservable>};
+constinit const ObservableEntry bond_order_observable = {
+    kResults, &make_observable<BondOrderObservable>, {"neighbours"}};
 
 }  // namespace twincell::analysis

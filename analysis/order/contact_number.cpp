@@ -67,6 +67,7 @@ class ContactNumber : public Observable {
 
 }  // namespace
 
-constinit const ObservableEntry contact_number_observable = {kResults, &make_observable<ContactNumber>};
+constinit const ObservableEntry contact_number_observable = {
+    kResults, &make_observable<ContactNumber>, {"cell_radius"}};
 
 }  // namespace twincell::analysis

@@ -188,6 +188,7 @@ Defects find_defects(const VoronoiCells& cells) {
   return d;
 }
 
-constinit const ObservableEntry defects_observable = {kResults, &make_observable<DefectsObservable>};
+constinit const ObservableEntry defects_observable = {
+    kResults, &make_observable<DefectsObservable>, {"cell_radius"}};
 
 }  // namespace twincell::analysis

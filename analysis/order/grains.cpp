@@ -178,6 +178,7 @@ Grains find_grains(const BondOrder& order, const VoronoiCells& cells) {
   return grains;
 }
 
-constinit const ObservableEntry grains_observable = {kResults, &make_observable<GrainsObservable>};
+constinit const ObservableEntry grains_observable = {
+    kResults, &make_observable<GrainsObservable>, {"neighbours", "cell_radius"}};
 
 }  // namespace twincell::analysis

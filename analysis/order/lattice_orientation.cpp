@@ -158,6 +158,7 @@ double turns_of_lattice(double degrees) {
   return kLatticePeriodDegrees * std::floor((degrees - kLowestOrientation) / kLatticePeriodDegrees);
 }
 
-constinit const ObservableEntry orientation_observable = {kResults, &make_observable<Orientation>};
+constinit const ObservableEntry orientation_observable = {
+    kResults, &make_observable<Orientation>, {"neighbours", "cell_radius"}};
 
 }  // namespace twincell::analysis

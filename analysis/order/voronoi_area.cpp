@@ -195,6 +195,7 @@ class VoronoiArea : public Observable {
 
 }  // namespace
 
-constinit const ObservableEntry voronoi_area_observable = {kResults, &make_observable<VoronoiArea>};
+constinit const ObservableEntry voronoi_area_observable = {
+    kResults, &make_observable<VoronoiArea>, {"cell_radius"}};
 
 }  // namespace twincell::analysis
