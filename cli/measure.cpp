@@ -109,6 +109,7 @@ std::string compared(const Run& rest, const Run& boiling) {
 void run(const MeasureOptions& options, const Common& common) {
   analysis::require_read(options.analysis);
   const std::vector<std::string> assignments = with_seed(options.assignments, common);
+  note_seed(common, sim::read_scene(options.scene, assignments), assignments);
   const Run first = run_once(options, assignments, "as in the scene", common);
   if (!options.output.empty())
     analysis::write_results(options.output, first.measured.results, first.provenance);

@@ -284,6 +284,7 @@ sim::Scene read_scene(const SimulateOptions& options, const Common& common) {
                              "`simulate` runs all {} cycles.",
                              scene.cycles));
   note_units(common, scene);
+  note_seed(common, scene, assignments);
   return scene;
 }
 

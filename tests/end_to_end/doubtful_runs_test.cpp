@@ -39,6 +39,25 @@ class DoubtfulRuns : public ::testing::Test {
   const TemporaryFolder folder_;
 };
 
+TEST_F(DoubtfulRuns, ASeedThatChangesNothingIsNoted) {
+  const std::string said = "the seed has no effect";
+  for (const char* verb : {"simulate", "measure"}) {
+    const auto run = [&](const std::string& kind, const std::vector<std::string>& seed) {
+      std::vector<std::string> words = {
+          verb,    folder_ / "scene.toml",        "-o",     folder_ / (verb + kind + ".h5"),
+          "--set", "start.kind=\"" + kind + "\"", "--force"};
+      words.insert(words.end(), seed.begin(), seed.end());
+      const Ran ran = run_program(words);
+      EXPECT_EQ(ran.code, 0) << ran.err;
+      return ran.err;
+    };
+    EXPECT_NE(run("crystal_a", {"--seed", "7"}).find(said), std::string::npos) << verb;
+    EXPECT_NE(run("crystal_a", {"--set", "start.seed=7"}).find(said), std::string::npos) << verb;
+    EXPECT_EQ(run("crystal_a", {}).find(said), std::string::npos) << verb;
+    EXPECT_EQ(run("random", {"--seed", "7"}).find(said), std::string::npos) << verb;
+  }
+}
+
 TEST_F(DoubtfulRuns, OtherGravityOrWallsAreNotPooled) {
   ASSERT_EQ(simulate("a.h5", {}).code, 0);
   ASSERT_EQ(simulate("half.h5", {"cell.gravity=0.5"}).code, 0);
