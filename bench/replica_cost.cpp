@@ -20,7 +20,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <exception>
 #include <map>
 #include <memory>
@@ -28,6 +27,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/cpu_clock.hpp"
 #include "core/error.hpp"
 #include "sim/contact/contact.hpp"
 #include "sim/kernels/simd_highway.hpp"
@@ -51,13 +51,6 @@ constexpr Size kLanes = Pack::kLanes;
 using Laws = LawSet<LinearSpringDashpot, SpringSlider, NoRolling>;
 constexpr Velocity kVelocity = Velocity::full_step;
 constexpr int kMemory = kRemembered<Laws, kVelocity, 2>;
-
-/// Processor time of this thread, s.
-double processor_time() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// One number of each bed.
 struct alignas(64) Numbers {
@@ -317,9 +310,9 @@ void Replicas::advance(System& clock, std::int64_t steps) {
     const Vec3 before = clock.plate_displacement();
     ++clock.step;
     if (k % kHorizon == 0) {
-      const double begin = processor_time();
+      const double begin = thread_cpu_seconds();
       refresh(clock);
-      list_seconds_ += processor_time() - begin;
+      list_seconds_ += thread_cpu_seconds() - begin;
     }
     wall_forces(clock, before);
     pair_forces(clock);
@@ -387,9 +380,9 @@ struct Cost {
            const std::vector<const System*>& truth, std::int64_t steps) {
     Replicas replicas(plan, beds, orders);
     System clock = beds.systems[0];
-    const double begin = processor_time();
+    const double begin = thread_cpu_seconds();
     replicas.advance(clock, steps);
-    seconds += processor_time() - begin;
+    seconds += thread_cpu_seconds() - begin;
     list_seconds += replicas.list_seconds();
     visits += replicas.visits();
     for (Size lane = 0; lane < kLanes; ++lane)
@@ -426,9 +419,9 @@ void run(int width, double gamma) {
     for (const auto& solver : solvers) now.contacts.push_back(solver->contacts());
     const Beds begun = now;
     visits -= list_visits();
-    const double begin = processor_time();
+    const double begin = thread_cpu_seconds();
     for (Size lane = 0; lane < kLanes; ++lane) solvers[lane]->advance(now.systems[lane], steps);
-    seconds += processor_time() - begin;
+    seconds += thread_cpu_seconds() - begin;
     visits += list_visits();
 
     std::vector<Order> orders = {BeadOrder::by_cells(begun.systems[0].beads, 1.5).bead};
