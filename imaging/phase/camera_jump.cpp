@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/median.hpp"
+#include "core/quantile.hpp"
 
 namespace twincell::imaging {
 
@@ -32,12 +33,6 @@ CommonStep step_between(const Deciles& from, const Deciles& to) {
   const auto off = static_cast<std::size_t>(std::count_if(
       steps.begin(), steps.end(), [&](double s) { return std::abs(s - middle) > kOff * std::abs(middle); }));
   return {middle, off <= kMostOff};
-}
-
-/// The value that a share of the values is below. \pre not empty
-double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
 }  // namespace
@@ -66,7 +61,7 @@ std::vector<CameraJump> jumps_of_beads(std::span<const std::optional<Deciles>> x
     steps.push_back(step_between(deciles[k - 1], deciles[k]));
     sizes.push_back(std::abs(steps.back().px));
   }
-  const double least = std::max(kTimesUsual * quantile(std::move(sizes), kUsual), kLeast * diameter_px);
+  const double least = std::max(kTimesUsual * lower_quantile(std::move(sizes), kUsual), kLeast * diameter_px);
   std::vector<CameraJump> jumps;
   for (std::size_t k = 1; k < steps.size(); ++k) {
     if (!steps[k].together || std::abs(steps[k].px) < least) continue;

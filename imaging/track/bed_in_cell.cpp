@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "core/median.hpp"
+#include "core/quantile.hpp"
+#include "trajectory/boundary_words.hpp"
 
 namespace twincell::imaging {
 
@@ -14,6 +16,7 @@ BedInCell::BedInCell(TrajectorySink& writer, const TrajectoryInfo& info, const C
     : writer_(writer), info_(info) {
   if (!cell.origin || !cell.pixels_per_sigma) return;
   if (info.box.boundary[0] == Boundary::wall) width_ = cell.width.value_or(0);
+  if (info.box.boundary[0] == Boundary::periodic) period_ = cell.width.value_or(0);
   picture_left_ = -cell.origin->x_px / *cell.pixels_per_sigma;
   picture_right_ = picture_left_ + width_px / *cell.pixels_per_sigma;
   plate_ = info.columns.plate_height && cell.origin->y_px < height_px;
@@ -35,7 +38,7 @@ void BedInCell::append(const Frame& frame) {
   if (n >= kMinBeads) {
     beads_.push_back(static_cast<double>(n));
     left_.push_back(left);
-    right_.push_back(width_ - right);
+    right_.push_back(width_ + period_ - right);
     if (plate_ && std::isfinite(frame.plate_height)) below_.push_back(low - frame.plate_height);
   }
   writer_.append(frame);
@@ -47,6 +50,13 @@ bool BedInCell::is_layered() const {
   // Over the width of the bed, not that of the cell, which may be what is wrong.
   const double bed = width_ - upper_median(left_) - upper_median(right_);
   return upper_median(beads_) >= kMinLayers * std::min(bed, width_);
+}
+
+bool BedInCell::stops_at_periods() const {
+  constexpr double kMinLayers = 4;                     // of fewer, none may lie across the sides
+  constexpr double kCrossing = 0.2, kOfFrames = 0.05;  // bead diameters; in this share of the frames at least
+  if (period_ <= 0 || upper_median(beads_) < kMinLayers * period_) return false;
+  return lower_quantile(left_, kOfFrames) > -kCrossing && lower_quantile(right_, kOfFrames) > -kCrossing;
 }
 
 std::vector<BedInCell::Finding> BedInCell::findings() const {
@@ -75,22 +85,23 @@ std::vector<BedInCell::Finding> BedInCell::findings() const {
     if (picture_left_ <= 0 || left > picture_left_ + kCut) side("left", left);
     if (picture_right_ >= width_ || width_ - right < picture_right_ - kCut) side("right", right);
   }
+  if (stops_at_periods())
+    all.push_back({fmt::format("the beads stop at the {} sides of the cell as at walls",
+                               boundary_word(Boundary::periodic)),
+                   0});
   if (below_.size() < kMinFrames) return all;
-  std::vector<double> gaps = below_;
-  const auto at =
-      gaps.begin() + static_cast<std::ptrdiff_t>(kRestQuantile * static_cast<double>(gaps.size()));
-  std::nth_element(gaps.begin(), at, gaps.end());
-  if (*at > kMaxGap)
+  const double gap = upper_quantile(below_, kRestQuantile);
+  if (gap > kMaxGap)
     all.push_back(
         {fmt::format("the lowest bead comes no closer to the plate than {:.2f} bead diameters: the plate is "
                      "elsewhere than camera.origin_px and the phases state, or the picture is upside down",
-                     *at),
-         *at});
-  else if (*at < -kMaxGap)
+                     gap),
+         gap});
+  else if (gap < -kMaxGap)
     all.push_back({fmt::format("beads are up to {:.2f} bead diameters beneath the plate: it is elsewhere "
                                "than camera.origin_px and the phases state",
-                               -*at),
-                   -*at});
+                               -gap),
+                   -gap});
   return all;
 }
 

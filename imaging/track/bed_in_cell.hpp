@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Whether the tracked beads fill the cell that is stated: a bed of several layers touches both side walls,
-/// and rests on the plate in a part of each cycle.
+/// crosses sides that are periodic, and rests on the plate in a part of each cycle.
 
 #include <cstddef>
 #include <string>
@@ -23,7 +23,8 @@ class BedInCell : public TrajectorySink {
   void append(const Frame& frame) override;
   /// Observations that contradict the stated cell, as sentences: over the frames, the median gap at a side
   /// wall, and the gap at the plate that 5 % of the frames fall below, each if it exceeds 0.35 bead diameters
-  /// to either side. Walls are checked for beds of two layers and more over their own width.
+  /// to either side. Walls are checked for beds of two layers and more over their own width. Periodic sides
+  /// that beds of four layers and more do not cross, as if there were walls.
   [[nodiscard]] std::vector<std::string> doubts() const;
   /// The first of these in a bed of two layers and more with a gap above one bead diameter, which no bed has;
   /// empty if there is none.
@@ -35,11 +36,14 @@ class BedInCell : public TrajectorySink {
     double gap;  ///< bead diameters
   };
   [[nodiscard]] bool is_layered() const;
+  /// Whether the beads stop at periodic sides.
+  [[nodiscard]] bool stops_at_periods() const;
   [[nodiscard]] std::vector<Finding> findings() const;
 
   TrajectorySink& writer_;
   const TrajectoryInfo& info_;
-  double width_ = 0;                                  ///< sigma; 0: not checked
+  double width_ = 0;                                  ///< between the walls, sigma; 0: not checked
+  double period_ = 0;                                 ///< of the sides, sigma; 0: not checked
   double picture_left_ = 0, picture_right_ = 0;       ///< its borders from the left wall, sigma
   bool plate_ = false;                                ///< checked
   std::vector<double> left_, right_, below_, beads_;  ///< by frame: gaps, sigma, and the number of beads

@@ -66,6 +66,33 @@ TEST(BedInCell, AWallOutsideThePictureIsDoubtfulWhereTheBedEndsInIt) {
   EXPECT_EQ(contradiction, "");
 }
 
+TEST(BedInCell, PeriodicSidesAtWhichTheBedStopsAreDoubtful) {
+  const auto said_of = [](double across, int layers) {
+    CellDescription cell;
+    cell.origin = PixelPoint{20, 200};
+    cell.pixels_per_sigma = 12;
+    cell.width = 10;
+    TrajectoryInfo info;
+    info.n_beads = static_cast<std::size_t>(10 * layers);
+    info.box.boundary[0] = Boundary::periodic;
+    MemoryTrajectory out(info);
+    BedInCell watched(out, info, cell, 300, 240);
+    for (int f = 0; f < 40; ++f) {
+      Frame frame;
+      frame.step = f;
+      for (int i = 0; i < 10 * layers; ++i)  // every other row is shifted
+        frame.position.emplace_back(std::fmod(0.5 + i % 10 + across * (i / 10 % 2), 10), 0, 0.5 + i / 10);
+      watched.append(frame);
+    }
+    std::string all;
+    for (const std::string& doubt : watched.doubts()) all += doubt + "\n";
+    return all;
+  };
+  EXPECT_NE(said_of(0.1, 5).find("stop at the periodic sides of the cell as at walls"), std::string::npos);
+  EXPECT_EQ(said_of(0.5, 5), "");
+  EXPECT_EQ(said_of(0.1, 3), "") << "of few layers, none may lie across";
+}
+
 TEST(BedInCell, ABedOfLayersABeadAwayContradictsTheCell) {
   const auto contradiction = [](double width, double left, double low, int layers = 4) {
     std::string found;
