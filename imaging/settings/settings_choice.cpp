@@ -12,6 +12,7 @@
 #include "imaging/refine/rim_shift.hpp"
 #include "imaging/refine/rim_variation.hpp"
 #include "imaging/settings/find_contrast.hpp"
+#include "imaging/settings/hypothesis_test.hpp"
 
 namespace twincell::imaging {
 

@@ -148,7 +148,8 @@ TEST(Analyze, Refusals) {
   EXPECT_EQ(run_program({"analyze", file, "-q", "--only", "s_d"}).code, 2);
   const Ran unread = run_program({"analyze", file, "-q", "--only", "q6", "--s-b", "as_printed"});
   EXPECT_EQ(unread.code, 2);
-  EXPECT_NE(unread.err.find("s_b: no requested result depends on it; s_k, s_b,"), std::string::npos) << unread.err;
+  EXPECT_NE(unread.err.find("s_b: no requested result depends on it; s_k, s_b,"), std::string::npos)
+      << unread.err;
   EXPECT_EQ(run_program({"analyze", file, "-q", "--discard", "8"}).code, 2);
   EXPECT_EQ(run_program({"analyze", file, "-q", "-o", folder / "no/r.h5"}).code, 2);
   EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"sim.h5"}));
