@@ -9,23 +9,13 @@ of all of them are compared with those of the bed on the core. Without a graphic
 
 import argparse
 import json
-import subprocess
-import sys
 from pathlib import Path
+
+from measured import measured
 
 # Layers of 20 beads, beds, samples a period.
 ROWS = [(20, 1, 20), (20, 126, 20), (20, 126, 400), (40, 126, 400), (60, 126, 400), (6, 1056, 20), (20, 1056, 20)]
 PERIODS = 1
-
-
-def measured(program, device, layers, beds, samples):
-    ran = subprocess.run(
-        [program, device, str(layers), str(beds), str(PERIODS), str(samples)], capture_output=True, text=True, check=False
-    )
-    if ran.returncode == 2:
-        sys.exit(ran.stderr.strip())
-    ran.check_returncode()
-    return json.loads(ran.stdout)
 
 
 def main():
@@ -35,7 +25,7 @@ def main():
     parser.add_argument("--device", choices=["gpu", "host"], default="gpu")
     options = parser.parse_args()
     program = options.build / "bench" / "device_cost"
-    rows = [measured(program, options.device, *row) for row in ROWS]
+    rows = [measured(program, options.device, *row[:2], PERIODS, *row[2:]) for row in ROWS]
     if options.json:
         print(json.dumps(rows, indent=1))
         return

@@ -9,19 +9,11 @@ within a row compare. Needs AVX-512; without it, it says so and ends.
 
 import argparse
 import json
-import subprocess
-import sys
 from pathlib import Path
 
+from measured import measured
+
 WIDTHS = [3, 5, 7, 14]  # 36, 100, 196, 784 beads
-
-
-def measured(program, width, gamma):
-    ran = subprocess.run([program, str(width), str(gamma)], capture_output=True, text=True, check=False)
-    if ran.returncode == 2:
-        sys.exit(ran.stderr.strip())
-    ran.check_returncode()
-    return json.loads(ran.stdout)
 
 
 def main():

@@ -44,9 +44,8 @@ struct Run {
   std::string provenance;
 };
 
-Run run_once(const MeasureOptions& options, const std::vector<std::string>& assignments,
-             const std::string& start, const Common& common) {
-  sim::Scene scene = sim::read_scene(options.scene, assignments);
+Run run_once(const MeasureOptions& options, sim::Scene scene, const std::string& start,
+             const Common& common) {
   protect_named_inputs(common, scene.named_files());
   sweep::require_one_drive(scene);
   note_units(common, scene);
@@ -109,8 +108,9 @@ std::string compared(const Run& rest, const Run& boiling) {
 void run(const MeasureOptions& options, const Common& common) {
   analysis::require_read(options.analysis);
   const std::vector<std::string> assignments = with_seed(options.assignments, common);
-  note_seed(common, sim::read_scene(options.scene, assignments), assignments);
-  const Run first = run_once(options, assignments, "as in the scene", common);
+  sim::Scene scene = sim::read_scene(options.scene, assignments);
+  note_seed(common, scene, assignments);
+  const Run first = run_once(options, std::move(scene), "as in the scene", common);
   if (!options.output.empty())
     analysis::write_results(options.output, first.measured.results, first.provenance);
   json document = first.about;
@@ -120,7 +120,7 @@ void run(const MeasureOptions& options, const Common& common) {
   if (options.both_starts) {
     std::vector<std::string> boiling = assignments;
     boiling.emplace_back(kFluidised);
-    const Run second = run_once(options, boiling,
+    const Run second = run_once(options, sim::read_scene(options.scene, boiling),
                                 "boiling: twice the amplitude for 20 cycles, then reduced within 10", common);
     document["other_start"] = second.about;
     document["other_start"]["results"] = json::parse(analysis::results_json(second.measured.results));

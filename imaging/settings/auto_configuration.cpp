@@ -103,13 +103,6 @@ std::vector<FoundSettings> plain_beside(const SettingsChoice& choice) {
   return plain;
 }
 
-/// Whether two settings may be those of two sizes of beads in one frame.
-bool apart(const FoundSettings& a, const FoundSettings& b) {
-  constexpr double kMinRatio = 1.12, kMaxRatio = 2.5;
-  const double ratio = std::max(a.diameter_px / b.diameter_px, b.diameter_px / a.diameter_px);
-  return ratio > kMinRatio && ratio < kMaxRatio;
-}
-
 /// The part of a frame around a disc, in which there are other discs too.
 cv::Mat region_around(const cv::Mat& frame, const LargerDisc& disc) {
   constexpr double kWider = 2;  // than the disc
@@ -270,7 +263,7 @@ class SettingsSearch {
       if (const std::vector<FoundSettings> plain = plain_beside(choice); !plain.empty()) {
         if (auto mixed = find_polydisperse(grey_, given_, hypotheses_, plain.front())) more.push_back(*mixed);
         for (const FoundSettings& other : plain)
-          if (apart(plain.front(), other)) {
+          if (sizes_apart({plain.front().diameter_px}, other.diameter_px)) {
             more.push_back(plain.front());
             more.back().other_diameters_px = {other.diameter_px};
             break;

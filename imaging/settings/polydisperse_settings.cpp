@@ -83,15 +83,14 @@ Mix settle(const cv::Mat& grey, const LocatorOptions& given, bool bright, double
   return best;
 }
 
-/// Whether a further size differs enough, but not too much, from all known ones.
-bool apart(const std::vector<double>& diameters, double other) {
+}  // namespace
+
+bool sizes_apart(const std::vector<double>& diameters, double other) {
   return std::all_of(diameters.begin(), diameters.end(), [&](double d) {
     const double ratio = std::max(d / other, other / d);
     return ratio > kMinRatio && ratio < kMaxRatio;
   });
 }
-
-}  // namespace
 
 std::optional<FoundSettings> find_polydisperse(const cv::Mat& grey, const LocatorOptions& given,
                                                const std::vector<Hypothesis>& all, const FoundSettings& one) {
@@ -115,7 +114,7 @@ std::optional<FoundSettings> find_polydisperse(const cv::Mat& grey, const Locato
     // Best candidate that explains clearly more.
     std::optional<Mix> better;
     for (const double d : candidates) {
-      if (d < 2 * kSmallestRadius || d > kLargestDiameter || !apart(known.diameters, d)) continue;
+      if (d < 2 * kSmallestRadius || d > kLargestDiameter || !sizes_apart(known.diameters, d)) continue;
       std::vector<double> more = known.diameters;
       more.push_back(d);
       Mix mix = settle(grey, given, one.bright, one.contrast, more);

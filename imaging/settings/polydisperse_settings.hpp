@@ -11,6 +11,10 @@
 
 namespace twincell::imaging {
 
+/// Whether discs of another diameter may be in one frame with discs of these: the ratio to each is between
+/// 1.12 and 2.5.
+bool sizes_apart(const std::vector<double>& diameters, double other);
+
 /// Finds up to three sizes of plain discs in a region of the frame. The search starts from the known size (of
 /// plain discs or of discs with a common profile). It adds a size as long as the enlarged set explains 2 %
 /// more of the picture, its discs are well explained, and at least 2 % of them have the rarest size. The
